@@ -86,6 +86,8 @@ class PreparedDecay:
     """Caveats on the record."""
     driven: bool = False
     """Whether the line moves at rest before the release; its decay is used as a whole."""
+    is_cut: bool = False
+    """Whether its start is left out, because the modes differ from those of later parts."""
 
     @property
     def channels(self) -> tuple[DropChannel, ...]:
@@ -298,25 +300,14 @@ def _describe_part(course: ResidualCourse, channels: list[str], windows: NDArray
 def use_whole_decay(
     record: DropRecord, columns: tuple[int, ...], release: Release, band: FrequencyBand, clipped_until: float
 ) -> LinearDecay:
-    """Decay of a line in motion to the end of the record; parameters as in `find_linear_decay`.
+    """Decay of a line in motion from the guard to the end of the record; parameters as in `find_linear_decay`.
 
-    It begins after the guard, or later if the residual of a fit is largest in the first half of the record, and beyond
-    the motion at rest.
+    The poles then show whether it begins later (`decay_begin`).
     """
     filtered = _filter_record(record, columns, release, band, clipped_until)
-    total, dt = filtered.samples.shape[0], filtered.step / record.rate
-    search = DecaySearch(filtered.samples, filtered.guard, dt, band, filtered.rest)
-    course = search.follow_coarse_fit()
-    largest = course.starts[course.starts >= search.begin][course.middle[course.starts >= search.begin].argmax()]
-    is_early = largest < (search.begin + total) // 2
-    if is_early and course.level(search.begin, total) > CALM and (begin := search.find_late_begin()) is not None:
-        search = replace(search, begin=begin)
-        course = search.follow_coarse_fit()
-    names = [record.channels[c].name for c in columns]
-    if is_early:
-        _require_calm(record.name, course, names, (search.begin, total), dt, band)
-    warnings = _describe_ends(record.name, course, names, (search.begin, total), total, dt)
-    return _cut_record(record, filtered, (search.begin, total), _build_evidence(course, dt), warnings=warnings)
+    search = DecaySearch(filtered.samples, filtered.guard, filtered.step / record.rate, band, filtered.rest)
+    evidence = _build_evidence(search.follow_coarse_fit(), search.dt)
+    return _cut_record(record, filtered, (filtered.guard, filtered.samples.shape[0]), evidence)
 
 
 def _build_evidence(course: ResidualCourse, dt: float) -> StretchEvidence:

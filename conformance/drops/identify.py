@@ -1,15 +1,17 @@
 """Identification of the modes of a line from mass-drop records."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.classical_poles import find_classical_poles
+from pantocheck.conformance.drops.decay_begin import NO_DELAY, begin_again, cut_begin, find_begin, refuse_begin
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, extend_decay, prepare_decay
+from pantocheck.conformance.drops.decay_search import SHORTEST_DECAY
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identification_plan import (
     IdentificationPlan,
@@ -49,8 +51,10 @@ from pantocheck.conformance.drops.start_poles import BandTrials, join_start_pole
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model.description.one_thread import use_one_thread
 
-CLOCK_ROUNDS = 8
-"""Largest number of identifications until the clocks of the sensors agree."""
+ROUNDS = 10
+"""Largest number of identifications until the clocks of the sensors agree, and the decay begins where it is linear."""
+BEGIN_STEP = 8.0
+"""Time by which a decay begins later if no later part agrees with the others [s]."""
 DRIVEN_STEPS = 4
 """Largest number of steps of the last refinement beside process noise; the search leaves little to refine."""
 SHARED_POLES = 1.5
@@ -89,6 +93,8 @@ class Identification:
     """Steps of the search for the poles."""
     clocks: tuple[SensorClock, ...] = ()
     """Clocks of the sensors, against that of the first one; empty: not compared."""
+    hidden: ComplexArray = field(default_factory=lambda: np.zeros(0, dtype=np.complex128))
+    """Poles that are not reported, because the plan drops them [1/s]."""
 
 
 @use_one_thread
@@ -150,35 +156,7 @@ def _identify_line(
     for record in records:
         progress(f"{record.name}: release and linear decay")
         decays.append(exclude_stretches(prepare_decay(record, band), plan))
-    return identify_on_one_clock(decays, band, start, progress, plan)
-
-
-def identify_on_one_clock(
-    decays: list[PreparedDecay],
-    band: FrequencyBand,
-    start: ComplexArray | None,
-    progress: Callable[[str], None],
-    plan: IdentificationPlan = NO_PLAN,
-) -> Identification:
-    """Identify decays as `identify_decays`, and correct the clocks of the sensors until they agree.
-
-    Raises:
-        InputError: The records state one clock, and the decays refute it.
-    """
-    applied: list[SensorClock] = []
-    for _ in range(CLOCK_ROUNDS):
-        found = identify_decays(decays, band, start, progress, plan)
-        compared = () if plan.method == "classical" else compare_clocks(found.fit)
-        clocks, moved = sum_clocks(compared, applied), list_corrections(compared)
-        if not moved:
-            break
-        records = [decay.record for decay in decays]
-        refuse_shared_clock(records, clocks)
-        applied += moved
-        progress(f"{records[0].name}: clocks of the sensors")
-        aligned = [align_record(record, moved) for record in records]
-        decays = [exclude_stretches(prepare_decay(record, band), plan) for record in aligned]
-    return replace(found, clocks=clocks, warnings=(*found.warnings, *describe_clocks(clocks)))
+    return identify_decays(decays, band, start, progress, plan)
 
 
 def identify_decays(
@@ -188,14 +166,67 @@ def identify_decays(
     progress: Callable[[str], None],
     plan: IdentificationPlan = NO_PLAN,
 ) -> Identification:
-    """Identify the modes of a line from decays in one band; further parameters as in `identify_modes`."""
-    is_free = start is None and not plan.changes_poles and plan.method != "classical"
-    if not (is_free and any(decay.driven for decay in decays)):
+    """Identify the modes of a line from decays in one band; further parameters as in `identify_modes`.
+
+    The clocks of the sensors are corrected until they agree, and the decays begin where their modes agree with those
+    of all later parts.
+
+    Raises:
+        InputError: The records state one clock, and the decays refute it; or no part of the decays is linear.
+    """
+    applied: list[SensorClock] = []
+    for _ in range(ROUNDS):
+        found = _identify_once(decays, band, start, progress, plan)
+        begin = find_begin(found.fit) if _is_free(start, plan) else NO_DELAY
+        compared = None if plan.method == "classical" else compare_clocks(found.fit)
+        clocks = () if compared is None else sum_clocks(compared.clocks, applied)
+        moved = [] if compared is None else list_corrections(compared.clocks, applied)
+        records = [decay.record for decay in decays]
+        if moved and begin.delay == 0:
+            refuse_shared_clock(records, clocks)
+        if moved and not any(record.shared_clock for record in records):
+            applied += moved
+            progress(f"{records[0].name}: clocks of the sensors")
+            aligned = [exclude_stretches(prepare_decay(align_record(record, moved), band), plan) for record in records]
+            decays = [begin_again(new, old) for new, old in zip(aligned, decays, strict=True)]
+        elif begin.delay == 0:
+            break
+        else:
+            delay = BEGIN_STEP if begin.delay is None else begin.delay
+            decays = [
+                cut_begin(old, record.decay, delay) for old, record in zip(decays, found.fit.records, strict=True)
+            ]
+            if min(decay.linear.duration for decay in decays) < SHORTEST_DECAY:
+                break
+    if begin.delay != 0:
+        raise refuse_begin(decays[0], begin)
+    if compared is not None and any(clock.rate for clock in applied):
+        # The rates were found from the same decays as the poles: both are estimated together.
+        fit = replace(found.fit, poles=compared.poles, covariance=compared.covariance)
+        found = replace(found, fit=fit, modes=_report_modes(fit, plan, found.hidden))
+    return replace(found, clocks=clocks, warnings=(*found.warnings, *describe_clocks(clocks)))
+
+
+def _is_free(start: ComplexArray | None, plan: IdentificationPlan) -> bool:
+    """Whether the identification chooses poles and method; with those of a user it tests nothing and adds no noise."""
+    return start is None and not plan.changes_poles and plan.method != "classical"
+
+
+def _identify_once(
+    decays: list[PreparedDecay],
+    band: FrequencyBand,
+    start: ComplexArray | None,
+    progress: Callable[[str], None],
+    plan: IdentificationPlan,
+) -> Identification:
+    """Identify decays from their present begin, beside ambient motion if they show any."""
+    driven = any(decay.driven for decay in decays)
+    if not (driven and _is_free(start, plan)):
         identification = _identify_free_decays(decays, band, start, progress, plan)
-        fit = identification.fit
-        if residual_excess(fit.poles, [block.data for block in fit.blocks]) < LEAST_EXCESS:
+        blocks = [block.data for block in identification.fit.blocks]
+        if not driven and residual_excess(identification.fit.poles, blocks) < LEAST_EXCESS:
             return identification
-        if not is_free:
+        if not _is_free(start, plan):
             return replace(identification, warnings=(*identification.warnings, NOT_CONTAINED))
     whole = [decay if decay.driven else exclude_stretches(extend_decay(decay, band), plan) for decay in decays]
     return _identify_driven_decays(whole, band, progress, plan)
@@ -205,7 +236,7 @@ def _identify_driven_decays(
     decays: list[PreparedDecay], band: FrequencyBand, progress: Callable[[str], None], plan: IdentificationPlan
 ) -> Identification:
     """Identify decays with ambient motion: the records are blocks of their own, because their motion differs."""
-    name, spans = decays[0].record.name, decays[0].record.line.spans_m
+    name = decays[0].record.name
     samples = [(decay.linear.samples, decay.linear.dt) for decay in decays]
     places = [(number, slice(0, channels.shape[1])) for number, (channels, _) in enumerate(samples)]
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
@@ -218,7 +249,7 @@ def _identify_driven_decays(
     search = PoleSearch(trials, (("start poles", start), ("added and removed", selection.poles)))
     progress(f"{name}: uncertainty")
     fit = fit_line(decays, places, data, selection.poles, selection.noise, band, DRIVEN_STEPS)
-    modes = select_reported(build_modes(fit, len(spans) or None), plan, np.zeros(0, dtype=np.complex128))
+    modes = _report_modes(fit, plan, np.zeros(0, dtype=np.complex128))
     return Identification(fit, modes, _list_warnings(fit), search)
 
 
@@ -230,7 +261,7 @@ def _identify_free_decays(
     plan: IdentificationPlan,
 ) -> Identification:
     """Identify decays without ambient motion; parameters as in `identify_decays`."""
-    name, spans = decays[0].record.name, decays[0].record.line.spans_m
+    name = decays[0].record.name
     samples, places = group_into_blocks(decays)
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
     progress(f"{name}: poles")
@@ -249,8 +280,13 @@ def _identify_free_decays(
     # A classical pole stays where its peak puts it; the residual then shows what the method leaves.
     last_steps = 0 if is_classical else LAST_STEPS
     fit = fit_line(decays, places, data, selection.poles, selection.noise, band, last_steps)
-    modes = select_reported(build_modes(fit, len(spans) or None), plan, hidden)
-    return Identification(fit, modes, _list_warnings(fit), search)
+    modes = _report_modes(fit, plan, hidden)
+    return Identification(fit, modes, _list_warnings(fit), search, hidden=hidden)
+
+
+def _report_modes(fit: LineFit, plan: IdentificationPlan, hidden: ComplexArray) -> tuple[Mode, ...]:
+    spans = fit.records[0].decay.record.line.spans_m
+    return select_reported(build_modes(fit, len(spans) or None), plan, hidden)
 
 
 def choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:

@@ -254,11 +254,15 @@ def _list_warnings(mode: Mode, duration: float, nearest: float) -> tuple[str, ..
 def _inflation(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
     """Factor by which standard deviations are increased if the residual near a mode exceeds the noise.
 
-    Process noise is estimated from this residual: the interval is that of Student's distribution instead.
+    Process noise is estimated from this residual: the interval is that of Student's distribution instead. The floor is
+    known from many lines, so that the degrees of freedom grow with its share in the variance (Satterthwaite 1946).
     """
     driven = [block.process for block in blocks if block.process is not None]
     if driven:
-        freedom = sum(PRIOR_FREEDOM + noise.freedom[np.argmin(np.abs(noise.poles - pole))] for noise in driven)
+        nearest = [int(np.argmin(np.abs(noise.poles - pole))) for noise in driven]
+        freedom = sum(PRIOR_FREEDOM + noise.freedom[k] for noise, k in zip(driven, nearest, strict=True))
+        power = np.mean([noise.power[k] for noise, k in zip(driven, nearest, strict=True)])
+        freedom *= (1 + 1 / max(float(power), 1e-3)) ** 2
         return float(scipy.stats.t.isf(0.025, freedom) / scipy.stats.norm.isf(0.025))
     energy, count = 0.0, 0
     for block in blocks:

@@ -9,7 +9,7 @@ import scipy
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.model_order import PoleSelection, repeat_selection, restrict_fit
-from pantocheck.conformance.drops.process_noise import ProcessNoise, update_components
+from pantocheck.conformance.drops.process_noise import ProcessNoise, deviance, update_components
 from pantocheck.conformance.drops.projection import (
     DataBlock,
     Noise,
@@ -25,6 +25,8 @@ NOISE_SECTION, NOISE_MARGIN = 2 * np.pi * 0.7, 2 * np.pi * 0.15
 """Width of the band whose noise is estimated together, and that of its margins [rad/s]."""
 FIRST_UPDATES, NEXT_UPDATES, LAST_UPDATES = 6, 4, 8
 """Numbers of updates of the variance components: first estimate, each round of the search, last estimate."""
+COMMON_SCALES = (1.0, 0.3, 0.1, 0.03)
+"""Factors of all powers, of which the most likely is taken: the updates of single powers approach 0 slowly [-]."""
 SEARCH_ROUNDS, EQUAL = 6, 0.1
 """Largest number of rounds of the search, and the share of a decay rate below which a pole no longer moves."""
 LEAST_REST_RATIO, SIGNIFICANT = 1.4, 5.0
@@ -101,7 +103,7 @@ def _estimate(
         before = None if previous is None else previous[number]
         noise = before if isinstance(before, ProcessNoise) else _start_noise(data, fit)
         noise = _follow_poles(noise, poles, data, fit)
-        prior = noise.prior
+        prior, sections = noise.prior, []
         for low in np.arange(data.omega[0], data.omega[-1], NOISE_SECTION):
             local = restrict_fit(poles, [data], [fit], low + NOISE_SECTION / 2, NOISE_SECTION / 2 + NOISE_MARGIN)
             if not local.blocks:
@@ -115,7 +117,9 @@ def _estimate(
                 freedom=np.where(own, updated.freedom, noise.freedom),
                 floor=np.where(nodes[:, None], updated.floor, noise.floor),
             )
-        estimates.append(noise)
+            sections.append((local.blocks[0], local.poles))
+        scaled = [replace(noise, power=scale * noise.power) for scale in COMMON_SCALES]
+        estimates.append(min(scaled, key=lambda trial: sum(deviance(trial, *section) for section in sections)))
     return estimates
 
 

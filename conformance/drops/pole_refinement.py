@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
+from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
@@ -18,6 +19,9 @@ from pantocheck.conformance.drops.projection import REFINEMENTS, DataBlock, elim
 
 SMALLEST_DAMPING_RATIO = 1e-6
 """Lower limit of a damping ratio [-]; slower decays are not observable in a record of some minutes."""
+
+NO_SENSORS: NDArray[np.bool_] = np.zeros((0, 0), dtype=np.bool_)
+"""Clocks are known."""
 
 
 @dataclass(frozen=True)
@@ -116,12 +120,12 @@ def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> Norm
     m = poles.size
     cost, matrix, gradient = 0.0, np.zeros((2 * m, 2 * m)), np.zeros(2 * m)
     for data in blocks:
-        value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
-        columns, derivative = np.hstack([real_columns(value), data.residual_terms]), real_columns(slope)
         if data.whitening is not None:
-            part = _eliminate_whitened(data, columns, derivative)
+            part = add_clock_rates(poles, data, NO_SENSORS)
             cost, matrix, gradient = cost + part.cost, matrix + part.matrix, gradient + part.gradient
             continue
+        value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
+        columns, derivative = np.hstack([real_columns(value), data.residual_terms]), real_columns(slope)
         fit = eliminate_columns(columns, stack_real_imaginary(data.spectrum), derivative)
         gram, correlation = fit.remainder.T @ fit.remainder, derivative.T @ fit.residual
         cost += float(np.sum(fit.residual**2))
@@ -129,12 +133,26 @@ def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> Norm
     return NormalEquations(cost, matrix, gradient)
 
 
-def _eliminate_whitened(data: DataBlock, columns: RealArray, derivative: RealArray) -> NormalEquations:
-    """Normal equations of a block whose channels have correlated noise at each line."""
+def add_clock_rates(poles: ComplexArray, data: DataBlock, sensors: NDArray[np.bool_]) -> NormalEquations:
+    """Normal equations of a whitened block with further unknowns: the rate of the clock of each sensor [-].
+
+    Args:
+        poles: Poles, (m,) [1/s].
+        data: Block in units of its noise.
+        sensors: Masks of the channels of each sensor, (s, c).
+
+    Returns:
+        Normal equations of decay rates, angular frequencies and rates, (2 m + s).
+    """
+    value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
+    columns, derivative = np.hstack([real_columns(value), data.residual_terms]), real_columns(slope)
     solve = prepare_elimination(data.expand(columns))
     coefficients, residual = solve(data.signals, 1 + REFINEMENTS)
     residues = coefficients.reshape(-1, data.spectrum.shape[1])[: derivative.shape[1]]
-    jacobian = solve(data.weigh_slopes(derivative, residues), 1)[1]
+    # A fast clock shows lower poles at its sensor.
+    slower = -np.concatenate([-poles.real, poles.imag])
+    rates = [data.weigh_slopes(derivative, residues * mask) @ slower for mask in sensors]
+    jacobian = solve(np.column_stack([data.weigh_slopes(derivative, residues), *rates]), 1)[1]
     return NormalEquations(float(np.sum(residual**2)), jacobian.T @ jacobian, (jacobian.T @ residual)[:, 0])
 
 

@@ -14,7 +14,7 @@ from pantocheck.conformance.drops.identify import (
     Identification,
     choose_band,
     group_by_line,
-    identify_on_one_clock,
+    identify_decays,
 )
 from pantocheck.model.description.one_thread import use_one_thread
 
@@ -87,12 +87,12 @@ def _identify_line(
         progress(f"{record.name} on its own")
         try:
             decay = exclude_stretches(prepare_decay(record, band), plan)
-            usable.append((decay, identify_on_one_clock([decay], band, poles, progress, plan)))
+            usable.append((decay, identify_decays([decay], band, poles, progress, plan)))
         except InputError as error:
             unusable.append(UnusableRecord(record, error))
     if not usable:
         return [], [], unusable
     (_, joint), *others = usable
     if others:
-        joint = identify_on_one_clock([decay for decay, _ in usable], band, poles, progress, plan)
+        joint = identify_decays([decay for decay, _ in usable], band, poles, progress, plan)
     return [PopulationTest(decay.record, single, joint) for decay, single in usable], [joint], unusable

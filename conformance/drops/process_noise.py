@@ -26,7 +26,7 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.drops.decay_kernel import join_conjugates, kernel_and_derivative, real_columns
-from pantocheck.conformance.drops.projection import DataBlock, factor_columns, solve_factor
+from pantocheck.conformance.drops.projection import DataBlock, factor_columns, pole_columns, solve_factor
 
 PRIOR_FREEDOM = 4.0
 """Degrees of freedom of the prior of a power: shapes at the sensors differ by a factor of about two [-]."""
@@ -124,6 +124,16 @@ def update_components(
             floor[b] *= np.sqrt(np.clip((spread[b] @ found) / (spread[b] @ expected), 0.1, 10))
         noise = replace(noise, power=power, freedom=freedom, floor=floor)
     return noise
+
+
+def deviance(noise: ProcessNoise, data: DataBlock, poles: ComplexArray) -> float:
+    """Minus twice the logarithm of the restricted likelihood of a noise in a block that decays are fitted to."""
+    white = noise.whiten(data)
+    assert white.whitening is not None
+    q, r = factor_columns(white.expand(np.hstack([pole_columns(poles, data), data.residual_terms])))
+    left = white.signals - q @ (q.T @ white.signals)
+    of_noise = -4 * np.sum(np.log(np.diagonal(white.whitening, axis1=1, axis2=2).real))
+    return float(np.sum(left**2) + of_noise + 2 * np.sum(np.log(np.abs(np.diag(r)))))
 
 
 def _compare_forms(

@@ -10,15 +10,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.line_fit import LineFit
-from pantocheck.conformance.drops.pole_refinement import build_normal_equations
-from pantocheck.conformance.drops.projection import DataBlock
+from pantocheck.conformance.drops.line_fit import FittedBlock, LineFit
+from pantocheck.conformance.drops.pole_refinement import NormalEquations, add_clock_rates, build_normal_equations
 
 REFUTED = 4.5
 """Rate over its standard deviation, from which on a common clock is refuted [-]."""
+LEAST_AGREEMENT, FEWEST_MODES = 0.9, 2.0
+"""Mean cosine of the phases, and effective number of modes, below which they show no start [-]."""
+CORRECTED = 2.0
+"""Rest of a corrected rate over its standard deviation, from which on it is corrected again [-]."""
 LEAST_RATE = 1e-6
 """Smallest rate that counts: crystals of one recorder differ by less [-]."""
 LONGEST_START, LEAST_START = 0.25, 0.002
@@ -51,55 +54,63 @@ class SensorClock:
         return abs(self.start) > max(REFUTED * self.start_std, LEAST_START)
 
 
-def compare_clocks(fit: LineFit) -> tuple[SensorClock, ...]:
-    """Clocks of the sensors of a fit; a single sensor has none to compare with."""
+@dataclass(frozen=True)
+class ClockComparison:
+    """Clocks of the sensors of a fit, and its poles if all rates are unknown."""
+
+    clocks: tuple[SensorClock, ...]
+    """Empty: a single sensor has none to compare with."""
+    poles: ComplexArray
+    """Poles after a Gauss-Newton step of poles and rates together, (m,) [1/s]."""
+    covariance: RealArray
+    """Covariance of decay rates and angular frequencies that contains that of the rates, (2 m, 2 m)."""
+
+
+def compare_clocks(fit: LineFit) -> ClockComparison:
+    """Compare the clocks of the sensors of a fit."""
     sensors = list(dict.fromkeys(channel.sensor for record in fit.records for channel in record.decay.channels))
     m = fit.poles.size
     if len(sensors) < 2 or not m:
-        return ()
-    direction = np.concatenate([-fit.poles.real, fit.poles.imag])
+        return ClockComparison((), fit.poles, fit.covariance)
     matrix, gradient = np.zeros((2 * m + len(sensors),) * 2), np.zeros(2 * m + len(sensors))
-    for number, sensor in enumerate(sensors):
-        equations = build_normal_equations(fit.poles, _select_sensor(fit, sensor))
-        # A fast clock shows lower poles.
-        column, own = -equations.matrix @ direction, 2 * m + number
-        matrix[: 2 * m, : 2 * m] += equations.matrix
-        matrix[own, : 2 * m] = matrix[: 2 * m, own] = column
-        matrix[own, own] = -direction @ column
-        gradient[: 2 * m] += equations.gradient
-        gradient[own] = -direction @ equations.gradient
+    for block in fit.blocks:
+        part = build_equations(fit, block, sensors)
+        matrix, gradient = matrix + part.matrix, gradient + part.gradient
     used = np.delete(np.arange(gradient.size), 2 * m)
     scale = np.sqrt(np.maximum(np.diag(matrix)[used], np.finfo(float).tiny))
     covariance = np.linalg.pinv(matrix[np.ix_(used, used)] / np.outer(scale, scale), hermitian=True)
-    rates = (covariance @ (gradient[used] / scale) / scale)[2 * m :]
-    stds = (np.sqrt(np.diag(covariance)) / scale)[2 * m :]
+    covariance /= np.outer(scale, scale)
+    change, std = covariance @ gradient[used], np.sqrt(np.diag(covariance))
     starts = [_find_start(fit, sensors[0], sensor) for sensor in sensors[1:]]
-    return tuple(
-        SensorClock(sensor, float(rate), float(std), *start)
-        for sensor, rate, std, start in zip(sensors[1:], rates, stds, starts, strict=True)
+    clocks = tuple(
+        SensorClock(sensor, float(rate), float(deviation), *start)
+        for sensor, rate, deviation, start in zip(sensors[1:], change[2 * m :], std[2 * m :], starts, strict=True)
     )
+    moved = -change[:m] + 1j * change[m : 2 * m]
+    # A step beyond the half-power band of a weak mode is not linear.
+    poles = np.where(np.abs(moved) < -fit.poles.real / 2, fit.poles + moved, fit.poles)
+    return ClockComparison(clocks, np.asarray(poles), np.asarray(covariance[: 2 * m, : 2 * m]))
 
 
-def _select_sensor(fit: LineFit, sensor: int) -> list[DataBlock]:
-    """Blocks with the channels of one sensor, in units of their noise."""
-    blocks = []
-    for block in fit.blocks:
-        columns = [
-            record.columns.start + number
-            for record in fit.records
-            if record.block is block
-            for number, channel in enumerate(record.decay.channels)
-            if channel.sensor == sensor
-        ]
-        if columns:
-            spectrum = block.data.spectrum[:, columns]
-            if block.process is None:
-                blocks.append(replace(block.data, spectrum=spectrum / block.noise[columns], whitening=None))
-                continue
-            own = np.asarray(block.process.covariance(block.data.omega)[:, columns][:, :, columns])
-            white = np.asarray(np.linalg.inv(np.linalg.cholesky(own)))
-            blocks.append(replace(block.data, spectrum=spectrum, whitening=white))
-    return blocks
+def build_equations(fit: LineFit, block: FittedBlock, sensors: Sequence[int]) -> NormalEquations:
+    """Normal equations of the poles and of the rates of all sensors in a block."""
+    own = np.zeros((len(sensors), block.noise.size), dtype=np.bool_)
+    for record in fit.records:
+        for number, channel in enumerate(record.decay.channels):
+            own[sensors.index(channel.sensor), record.columns.start + number] |= record.block is block
+    if block.process is not None:
+        return add_clock_rates(fit.poles, block.data, own)
+    # Channels with white noise of their own are independent of each other.
+    m, slower = fit.poles.size, -np.concatenate([-fit.poles.real, fit.poles.imag])
+    matrix, gradient = np.zeros((2 * m + len(own),) * 2), np.zeros(2 * m + len(own))
+    for number, columns in enumerate(own):
+        white = replace(block.data, spectrum=block.data.spectrum[:, columns] / block.noise[columns])
+        if columns.any():
+            part = build_normal_equations(fit.poles, [white])
+            spread = np.eye(2 * m, gradient.size)
+            spread[:, 2 * m + number] = slower
+            matrix, gradient = matrix + spread.T @ part.matrix @ spread, gradient + spread.T @ part.gradient
+    return NormalEquations(0.0, matrix, gradient)
 
 
 def _find_start(fit: LineFit, first: int, sensor: int) -> tuple[float, float]:
@@ -117,15 +128,28 @@ def _find_start(fit: LineFit, first: int, sensor: int) -> tuple[float, float]:
     w, p, s = (np.concatenate(values) for values in (omega, phase, weight))
     trials = np.arange(-LONGEST_START, LONGEST_START, 1e-4)
     score = np.cos(p[:, None] - 2 * np.outer(w, trials)).T @ s
+    modes = np.sum(s * w**2) ** 2 / np.sum((s * w**2) ** 2)
+    if score.max() < LEAST_AGREEMENT * s.sum() or modes < FEWEST_MODES:
+        return 0.0, np.inf
     start = float(trials[int(np.argmax(score))])
     left = np.angle(np.exp(1j * (p - 2 * w * start))) / 2
-    return start, float(np.sqrt(np.sum((s * w * left) ** 2)) / np.sum(s * w**2))
+    scatter = float(np.sqrt(np.sum((s * w * left) ** 2)) / np.sum(s * w**2))
+    return start, scatter * float(np.sqrt(modes / (modes - 1)))
 
 
-def list_corrections(clocks: Sequence[SensorClock]) -> list[SensorClock]:
-    """Next corrections: rates that deviate; once none does, starts that differ. Wrong rates disturb the phases."""
-    if any(clock.deviates for clock in clocks):
-        return [replace(clock, start=0.0) for clock in clocks if clock.deviates]
+def list_corrections(clocks: Sequence[SensorClock], applied: Sequence[SensorClock]) -> list[SensorClock]:
+    """Next corrections: rates that deviate; once none does, starts that differ. Wrong rates disturb the phases.
+
+    A rate that was corrected before is corrected until its rest is small; the last step contains this rest.
+    """
+    corrected = {clock.sensor for clock in applied if clock.rate}
+    rates = [
+        clock
+        for clock in clocks
+        if clock.deviates or (clock.sensor in corrected and abs(clock.rate) > CORRECTED * clock.rate_std)
+    ]
+    if rates:
+        return [replace(clock, start=0.0) for clock in rates]
     if any(clock.is_late for clock in clocks):
         return [replace(clock, rate=0.0) for clock in clocks if clock.is_late]
     return []

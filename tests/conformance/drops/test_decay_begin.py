@@ -1,0 +1,86 @@
+"""Begin of the linear decay by the poles, and the rates of the clocks in their covariance."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from helpers.surrogate_drops import build_line_modes, make_record
+from pantocheck.conformance.drops.decay_begin import cut_begin, find_begin, refuse_begin
+from pantocheck.conformance.drops.identify import Identification, identify_modes
+from pantocheck.conformance.drops.line_fit import LineFit, fit_line
+from pantocheck.conformance.drops.pole_refinement import add_clock_rates
+from pantocheck.conformance.drops.process_noise import ProcessNoise
+from pantocheck.conformance.drops.projection import build_block
+from pantocheck.conformance.drops.sensor_clocks import build_equations, compare_clocks
+from verification.tables.field_records import LINES, Disturbance
+
+
+@pytest.fixture(scope="module")
+def found() -> Identification:
+    """Three sensors, ambient motion as strong as the noise."""
+    modes = build_line_modes(next(iter(LINES)))
+    made = make_record(modes, np.random.default_rng(3), Disturbance(wind=1.0), sensors=3, minutes=1.5)
+    return identify_modes((made.record,), 2.3)[0]
+
+
+def change_samples(found: Identification, factor: np.ndarray) -> LineFit:
+    """Fit of the decays times a factor of each sample, with the poles and the noise found without it."""
+    fit, record = found.fit, found.fit.records[0]
+    linear, process = record.decay.linear, record.block.process
+    samples = linear.samples * factor[:, None]
+    decay = replace(record.decay, linear=replace(linear, samples=samples))
+    data = build_block(samples, linear.dt, fit.band.low, fit.band.fitted)
+    assert process is not None
+    return fit_line([decay], [(0, record.columns)], [data], fit.poles, [process], fit.band, 4)
+
+
+def test_linear_decay_keeps_its_begin(found: Identification) -> None:
+    """Beside ambient motion, the decay begins 2 s after the release; a sample is 0.03 s."""
+    decay = found.fit.records[0].decay
+    assert decay.linear.start - decay.release.time == pytest.approx(2.0, abs=0.04)
+    assert find_begin(found.fit).excess < 1
+
+
+def test_decay_begins_after_a_part_that_biases_the_modes(found: Identification) -> None:
+    """Amplitudes that are 2 % larger in the first 1.5 s: from 1 s on, a third of them may stay unseen."""
+    linear = found.fit.records[0].decay.linear
+    early = np.arange(linear.samples.shape[0]) * linear.dt < 1.5
+    begin = find_begin(change_samples(found, np.where(early, 1.02, 1.0)))
+    assert begin.delay in (1.0, 2.0)
+    assert begin.excess > 1
+    decay = found.fit.records[0].decay
+    cut = cut_begin(decay, decay, 2.0)
+    assert cut.linear.start == pytest.approx(linear.start + 2.0, abs=linear.dt / 2)
+    assert any("with an earlier begin, the modes differ" in text for text in cut.warnings)
+
+
+def test_decay_whose_modes_never_agree_is_refused(found: Identification) -> None:
+    """Amplitudes that change by a third every 7 s, to the end of the record."""
+    linear = found.fit.records[0].decay.linear
+    time = np.arange(linear.samples.shape[0]) * linear.dt
+    begin = find_begin(change_samples(found, 1 + 0.3 * np.sign(np.sin(2 * np.pi * time / 7.0))))
+    assert begin.delay is None
+    assert "is not a linear decay: the modes of the part from 2 s" in str(
+        refuse_begin(found.fit.records[0].decay, begin)
+    )
+
+
+def test_unknown_rates_widen_the_poles_and_do_not_depend_on_the_form_of_the_noise(found: Identification) -> None:
+    """White noise as a covariance at each line gives the equations of separate sensors, up to rounding."""
+    fit = found.fit
+    block, channels = fit.blocks[0], fit.blocks[0].noise.size
+    free = np.asarray(compare_clocks(fit).covariance)
+    assert np.all(np.diag(free) > np.diag(fit.covariance) * (1 - 1e-6))
+    assert (np.diag(free) / np.diag(fit.covariance)).max() > 1.05
+    empty = np.zeros(0, dtype=np.complex128)
+    floor = np.tile(block.noise, (2, 1))
+    nodes = block.data.omega[[0, -1]]
+    flat = ProcessNoise(empty, np.zeros((0, channels), complex), np.zeros(0), np.zeros(0), nodes, floor)
+    plain = replace(block, process=None, data=replace(block.data, whitening=None))
+    white = replace(fit, blocks=(plain,), records=(replace(fit.records[0], block=plain),))
+    separate = build_equations(white, plain, (1, 2, 3))
+    together = add_clock_rates(fit.poles, flat.whiten(plain.data), np.eye(3, dtype=bool))
+    largest = np.abs(separate.matrix).max()
+    assert_allclose(together.matrix, separate.matrix, rtol=1e-6, atol=1e-9 * largest)
