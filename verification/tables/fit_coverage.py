@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from pantocheck.conformance import FittedDamping, OpenedCase, OpenedDrop, identify_line, open_case
+from verification.tables.interval_share import SHARE_COLUMNS, IntervalShare, print_table
 
 NOISE_RMS = 0.003  # [m/s2], as in the cases of mass drops
 HIGHEST_HZ = 4.0  # first four groups of modes
@@ -45,9 +46,12 @@ def main() -> None:
             rows = list(compare_with_truth(case, fit))
             found += rows
             print(f"{len(sensors)} sensors, seed {seed}:", ", ".join(describe_row(*row) for row in rows), flush=True)
-    contained = sum(low <= 0 <= high for low, _, high in found)
     width = np.median([(high - low) / 2 for low, _, high in found])
-    print(f"{contained} of {len(found)} intervals contain the truth; median half-width {width:.1%}")
+    needed = np.quantile([abs(value) / (high - low) * 2 for low, value, high in found], 0.95)
+    share = IntervalShare(len(found), sum(low <= 0 <= high for low, _, high in found), 1 / float(needed))
+    print_table(
+        [SHARE_COLUMNS, "median half-width [%]", "outcome"], [[share.text, f"{100 * width:.1f}", share.outcome]]
+    )
 
 
 def build_drops(spans: int) -> OpenedCase:
