@@ -5,6 +5,9 @@ import os
 import shutil
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 VARIABLE = "NUMBA_CACHE_DIR"
@@ -40,11 +43,27 @@ def find_kernel_cache() -> Path | None:
 
 def has_kept_kernels() -> bool:
     """Whether an earlier run has kept its compiled kernels; each cache has them in folders of their own."""
+    return any(_list_kept("recording.*.nbi"))
+
+
+@cache
+def drop_outdated_kernels() -> None:
+    """Remove kept kernels that are older than a source: numba compares the file of a kernel, not what it imports."""
+    newest = max(path.stat().st_mtime for path in Path(__file__).parent.rglob("*.py"))
+    for file in _list_kept("*.nbi"):
+        with suppress(OSError):  # another process removes it, or it belongs to another user
+            if file.stat().st_mtime < newest:
+                file.unlink()
+
+
+def _list_kept(pattern: str) -> Iterator[Path]:
+    """Kept files of the kernels of this installation."""
     folder = find_kernel_cache()
     if folder is None:
-        return False
+        return
     beside = folder.parent if folder.name == "__pycache__" else folder
-    return any(file for depth in ("*", "*/*") for file in beside.glob(f"{depth}/recording.*.nbi"))
+    for depth in ("*", "*/*"):
+        yield from beside.glob(f"{depth}/{pattern}")
 
 
 def _is_writable(folder: Path) -> bool:

@@ -14,7 +14,7 @@ from types import FunctionType
 from typing import Any, TypeVar
 
 from pantocheck.model.dynamics.core_choice import call_core, choose_core
-from pantocheck.model.kernel_cache import provide_kernel_cache
+from pantocheck.model.kernel_cache import drop_outdated_kernels, provide_kernel_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -29,6 +29,7 @@ class LateObject:
     def built(self) -> Any:
         """The object; builds it."""
         provide_kernel_cache()
+        drop_outdated_kernels()
         import_module("pantocheck.model.dynamics.vector_code")  # the type of vectors, before a function is compiled
         return self._build()
 

@@ -51,6 +51,18 @@ def test_kernels_of_an_earlier_run_are_found(folder: str, monkeypatch: pytest.Mo
     assert kernel_cache.has_kept_kernels()
 
 
+def test_kernels_older_than_a_source_are_removed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A kept kernel can name a class that an update of the suite has moved to another file."""
+    monkeypatch.setenv(kernel_cache.VARIABLE, str(tmp_path))
+    (tmp_path / "dynamics_1f").mkdir()
+    old, new = (tmp_path / "dynamics_1f" / f"{name}.py311.nbi" for name in ("vectors.dot-3", "recording._advance-9"))
+    old.touch()
+    os.utime(old, (0, 0))
+    new.touch()
+    kernel_cache.drop_outdated_kernels.__wrapped__()
+    assert [old.exists(), new.exists()] == [False, True]
+
+
 @pytest.mark.parametrize(("path", "writable"), [("", True), ("a/b", True), ("program", False), ("program/a", False)])
 def test_writable_folder_is_found(path: str, writable: bool, tmp_path: Path) -> None:
     (tmp_path / "program").touch(mode=0o755)
