@@ -23,7 +23,7 @@ from pantocheck.conformance.pantograph.transfer_function import (
 ITERATIONS = 30
 """Moves of the poles."""
 
-START_RATIO = 0.05
+FIRST_DAMPING_RATIO = 0.05
 """Damping ratio of the start poles."""
 
 
@@ -53,7 +53,7 @@ def fit_transfer_function(data: MeasuredStiffness, pairs: int) -> FittedTransfer
     if data.frequency.size < 3 * pairs:
         raise InputError("the responses", f"have {data.frequency.size} values", f"Give at least {3 * pairs}.")
     omega = 2 * np.pi * np.geomspace(data.frequency.min(), data.frequency.max(), pairs)
-    pole, s, value = -START_RATIO * omega + 1j * omega, data.s, 1 / data.stiffness
+    pole, s, value = -FIRST_DAMPING_RATIO * omega + 1j * omega, data.s, 1 / data.stiffness
     weight = np.sqrt(np.prod(data.weight, axis=0)) / np.abs(value)
     for _ in range(ITERATIONS):
         basis = _basis(pole, s)
