@@ -68,7 +68,8 @@ def test_every_field_of_the_format_is_walked_or_absent(wave_results: Results) ->
     walked = {place.field for place in list_places(wave_results, [Results])}
     absent = set(list_fields([Results])) - walked
     inside = {field: [f for f in absent if f == field or f.startswith((f"{field}.", f"{field}["))] for field in ABSENT}
-    assert sorted(absent - {field for fields in inside.values() for field in fields}) == []
+    left = sorted(absent - {field for fields in inside.values() for field in fields})
+    assert left == [], "\n".join(left)
     assert [field for field, fields in inside.items() if not fields] == []
 
 
