@@ -1,7 +1,7 @@
 """Size of the project: numbers that only fall.
 
-Lines are counted in every language that a maintainer edits by hand: Python, JavaScript, C++, Octave and the templates
-of pages. Data (TOML, JSON, CSV), translated texts and unmodified files of other packages do not count.
+Lines are counted in every language that a maintainer edits by hand: Python, C, JavaScript, C++, Octave and the
+templates of pages. Data (TOML, JSON, CSV), translated texts and unmodified files of other packages do not count.
 """
 
 import subprocess
@@ -10,26 +10,26 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
+CODE = {".py", ".c", ".h", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
-    ("model", "conformance"): 78_950,
-    ("templates",): 3_620,
-    ("verification",): 18_700,
-    ("tests",): 55_650,
+    ("model", "conformance"): 84_900,
+    ("templates",): 3_920,
+    ("verification",): 19_650,
+    ("tests",): 58_250,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
-Documents that a stranger can check, the identification in the field with its benchmark, the line as built, contact
-laws, heads with structure, validity frequencies and the speed of commands have raised them last; the identification
-and the line by more than one subject may. A lower number replaces these
-whenever it is reached. A subject that must add lines raises its number in the same
+The core of the time steps in C (1,780 lines of the product with its choice), pantographs as FMUs (1,650), records of
+several files with clocks of their own (1,460), heads in the checks of records and the fit of transfer functions (490),
+the verifier in the language of a document and the steps of its dossier (270 lines of templates) have raised them last.
+A lower number replaces these whenever it is reached. A subject that must add lines raises its number in the same
 commit, states the reason there, and adds at most 1,800 lines to the product, 1,500 to the tests and 900 to
 `verification/`.
 """
 
-MOST_WORDS = 73_700
+MOST_WORDS = 76_450
 """Largest number of words in the pages of `docs/`."""
 
 

@@ -11,7 +11,7 @@ are extrapolated by the mass that its head has within a step, so that the coupli
 
 The force is held at its mean over the step. Average acceleration does the same to a built-in pantograph, so that a
 program with the midpoint rule gives its motion. Both sides see the same work if their heights agree; their difference
-is energy that the coupling makes (residual energy: Sadjina et al. 2017, doi:10.1007/s00366-016-0491-8).
+is energy that the coupling makes (residual energy: Sadjina et al. 2017, doi:10.1007/s00366-016-0492-8).
 """
 
 import math
