@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pantocheck.conformance.app.commands.describe_command import draft_record_sidecar
+from pantocheck.conformance.app.commands.sidecar_drafts import DescribedTable, draft_record_sidecar
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
@@ -58,8 +58,8 @@ def use_logger(file: str) -> Callable[[Path], object]:
 
     def use(folder: Path) -> None:
         for table in read_tables(folder / file, EVERY_CHANNEL, LARGEST_DROP):
-            facts = list_channel_facts(table)
-            draft_record_sidecar(file, facts, find_time(table), TextSettings())
+            part = DescribedTable(file, table.values.shape[0], list_channel_facts(table), find_time(table))
+            draft_record_sidecar([part], TextSettings())
         profile = load_profile("acceptance-ac")
         check(assess_record(load_assessed_record(folder / file, profile, LineTable()), profile))
 

@@ -64,9 +64,9 @@ def build_results_output(
     system = f"{results.system.name} {results.system.version}".strip()
     headline = f"{build_headline(results)} System: {system}"
     tables: list[RenderableType] = [escape_text(f"{results.statement}. {state_decision(results)}")]
-    if results.administration is not None:
-        stated = list_administration(results.administration)
-        tables.append(escape_text("; ".join(f"{label}: {clean_text(text)}" for label, text in stated)))
+    stated = list_administration(results.administration) if results.administration is not None else ()
+    issued = [escape_text("; ".join(f"{label}: {clean_text(text)}" for label, text in stated))] if stated else []
+    tables += issued
     footnotes = list_footnotes(results.cases)
     for case in results.cases:
         tables += [Text(), *_describe_case(case, footnotes)]
@@ -83,7 +83,11 @@ def build_results_output(
     return GradedOutput(
         conclusion=style_verdict(mark_results(results)) + escape_text(f" {headline}"),
         data=results,
-        details=[*(part for pair in zip(lines, below, strict=True) for part in (pair[0], *pair[1])), statement],
+        details=[
+            *(part for pair in zip(lines, below, strict=True) for part in (pair[0], *pair[1])),
+            statement,
+            *issued,
+        ],
         further=tables,
         files=files,
         exit_code=exit_code,

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +17,6 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.step_log import ShareCallback
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
@@ -271,9 +271,9 @@ def test_computing_time_begins_after_a_first_step(two_pantograph_case: Case, mon
     """A passage without a step would leave the compilation of the time step to the run that is timed."""
     steps = []
 
-    def simulate(line: DiscretisedLine, passage: Passage, progress: ShareCallback | None = None) -> History:
+    def simulate(line: DiscretisedLine, passage: Passage, *others: Any) -> History:
         steps.append(round(passage.duration / passage.time_step))
-        return simulate_passage(line, passage, progress)
+        return simulate_passage(line, passage, *others)
 
     monkeypatch.setattr(case_run, "integrate_passage", simulate)
     line, discretisation = discretise(build_catenary(two_pantograph_case.line), 5.0), Discretisation(time_step_s=0.004)
