@@ -97,6 +97,7 @@ class TaskProgress(logging.Handler):
         """Begin a task that may report no steps; the task before it is finished."""
         if self._task is not None:
             self.finish_task()
+        self._total = max(self._total, self._finished + 1)  # a computation can repeat a task
         self._task = name
         _LOGGER.info("%s", name)
 

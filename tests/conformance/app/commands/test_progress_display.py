@@ -103,6 +103,14 @@ def test_remaining_time_is_not_extrapolated_from_nothing() -> None:
     assert progress.describe().startswith("self-test: 1 of 4 finished, late force, 25 %")
 
 
+def test_repeated_tasks_raise_their_number() -> None:
+    """Clocks that were corrected, or a later begin, repeat the identification."""
+    progress = TaskProgress("identification", 2, Clock())
+    for name in ("release", "poles", "poles again"):
+        progress.begin_task(name)
+    assert progress.describe().startswith("identification: 2 of 3 finished, poles again, 67 %")
+
+
 def test_cases_and_steps_that_are_running_are_named(caplog: pytest.LogCaptureFixture) -> None:
     progress = TaskProgress("running cases", 1, Clock())
     assert progress.describe() == "running cases, 0:00:00 elapsed"
