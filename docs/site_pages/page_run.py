@@ -179,8 +179,8 @@ def _is_same_word(shown: str, printed: str) -> bool:
         return re.fullmatch(".*".join(map(re.escape, shown.split("..."))), printed) is not None
     if NUMBER.sub("#", shown) != NUMBER.sub("#", printed):
         return False
-    pairs = zip(NUMBER.finditer(shown), NUMBER.finditer(printed), strict=True)
-    return all(
+    ones, others = list(NUMBER.finditer(shown)), list(NUMBER.finditer(printed))
+    return len(ones) == len(others) and all(
         abs(float(one[0]) - float(other[0])) <= 1.01 * 10.0 ** -len(one[1] or "") if one[1] else one[0] == other[0]
-        for one, other in pairs
+        for one, other in zip(ones, others, strict=True)
     )
