@@ -12,10 +12,10 @@ from verification.tables.input_variations import (
     Choice,
     Grade,
     NotApplicable,
-    apply_choice,
     grade_error,
     list_changes,
     read_variations,
+    vary_choice,
 )
 from verification.tables.resolving_power import (
     complete_file,
@@ -146,9 +146,7 @@ def test_error_that_a_case_does_not_support_has_a_reason(case_250: Case, name: s
     with pytest.raises(NotApplicable, match=reason):
         grade_error(case_250, INPUTS[name], error)
     with pytest.raises(NotApplicable, match="has this setting"):
-        apply_choice(
-            case_250, Choice(name="same", group="supports", settings={"line.steady_arm.static_share": "level"})
-        )
+        vary_choice(case_250, Choice(name="same", group="supports", settings={"line.steady_arm.static_share": "level"}))
 
 
 def test_wrong_input_is_graded_as_a_record_of_the_case(case_250: Case) -> None:

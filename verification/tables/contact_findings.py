@@ -12,7 +12,6 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.core.verdicts import judge
 from pantocheck.conformance.grading.criterion_grading import find_value
-from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.pantograph.pantograph_file import ContactTable, PantographFile
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
@@ -32,15 +31,15 @@ def list_cases() -> dict[str, Case]:
     return cases | {"two strips": replace(load_study(), pantographs=(strips,) * len(load_study().pantographs))}
 
 
-def find_changes(case: Case) -> ValuesByOwner:
-    """Changes by the updated damping."""
+def find_changes(case: Case, treatment: str | None = None) -> ValuesByOwner:
+    """Changes by the updated damping, with a treatment of the discretised line."""
     ((name, initial),) = case.dampings.items()
-    return compare_damping_runs(_simulate(case, name, initial), _simulate(case, "updated", case.line.damping)).values
+    pair = ((name, initial), ("updated", case.line.damping))
+    return compare_damping_runs(*(_simulate(case.with_damping(*model), treatment) for model in pair)).values
 
 
-def _simulate(case: Case, name: str, damping: Damping) -> RecordSignals:
-    variant = case.with_damping(name, damping)
-    return RecordSignals(simulate_varied(variant).record, variant.file.filter, variant.line.geometry.supports)
+def _simulate(case: Case, treatment: str | None) -> RecordSignals:
+    return RecordSignals(simulate_varied(case, treatment).record, case.file.filter, case.line.geometry.supports)
 
 
 def print_findings(changes: Mapping[str, ValuesByOwner]) -> None:

@@ -2,8 +2,7 @@
 
 python -m verification.tables.input_conditions [CASE ...] [--out reference_cases/conditions]
 
-The uplift force of a case
-with a mean force is tuned anew for every change.
+The uplift force of a case with a mean force is tuned anew for every change.
 """
 
 import argparse
@@ -18,17 +17,18 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.trust import StudiedPart
-from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.case_run import PassageRun
+from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.model.description.failures import SimulationError
 from verification.speed.passage_lines import QUANTITIES
+from verification.tables.contact_findings import find_changes
+from verification.tables.contact_table import OTHER_PASSAGES
 from verification.tables.input_variations import (
     NotApplicable,
-    apply_choice,
     list_changes,
     load_varied,
     read_variations,
     simulate_varied,
+    vary_choice,
 )
 from verification.tables.resolving_power import CASES
 
@@ -38,15 +38,20 @@ Values = dict[tuple[int, str], float]
 """Values by pantograph, 0 for the line, and quantity."""
 
 
-def evaluate(case: Case, passage: PassageRun) -> Values:
-    """Quantities of a passage."""
-    found = RecordSignals(passage.record, case.file.filter, case.line.geometry.supports).evaluation.values
-    return {(owner, name): float(found[owner][name]) for owner in found for name in QUANTITIES if name in found[owner]}
+def measure(case: Case, treatment: str | None = None) -> Values:
+    """Quantities of the passage of a case, and the findings of its study."""
+    record = simulate_varied(case, treatment).record
+    found = evaluate_record(record, case.file.filter, case.line.geometry.supports).values
+    values = {
+        (owner, name): float(found[owner][name]) for owner in found for name in QUANTITIES if name in found[owner]
+    }
+    changes = find_changes(case, treatment) if case.dampings else {}
+    return values | {(owner, name): float(value) for owner, row in changes.items() for name, value in row.items()}
 
 
 def measure_conditions(case: Case) -> Iterator[ValueCondition]:
     """Effects of all tabled errors and choices on a case, those that it does not support included."""
-    own = evaluate(case, simulate_varied(case))
+    own = measure(case)
     for item in read_variations().input:
         for error in item.conditions:
             name = f"{item.name} {error:+g} {item.unit}"
@@ -55,10 +60,11 @@ def measure_conditions(case: Case) -> Iterator[ValueCondition]:
             except (NotApplicable, InputError) as problem:
                 yield ValueCondition(name=name, group=item.group, not_applicable=" ".join(str(problem).split()))
                 continue
-            yield compare(name, item.group, own, evaluate(varied, simulate_varied(varied)))
+            yield compare(name, item.group, own, measure(varied))
     for choice in read_variations().choice:
         try:
-            yield compare(choice.name, choice.group, own, evaluate(case, apply_choice(case, choice)))
+            changed = measure(vary_choice(case, choice), choice.treatment)
+            yield compare(choice.name, choice.group, own, changed)
         except (NotApplicable, SimulationError) as problem:
             reason = " ".join(str(problem).split())
             yield ValueCondition(name=choice.name, group=choice.group, not_applicable=reason)
@@ -95,7 +101,7 @@ def write_file(case: Case, conditions: Sequence[ValueCondition]) -> str:
 def main() -> None:
     """Compute and store."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("cases", nargs="*", default=(*CASES, "force-law/300"), metavar="CASE")
+    options.add_argument("cases", nargs="*", default=(*CASES, *OTHER_PASSAGES), metavar="CASE")
     options.add_argument("--out", type=Path, default=OUT, help="folder to write to")
     chosen = options.parse_args()
     known = {case.id: case for case in select_cases(chosen.cases)}

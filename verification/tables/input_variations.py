@@ -243,12 +243,11 @@ def _name_failures(criteria: list[Criterion], verdict: str) -> list[str]:
     return [f"{name} ({verdict})" for name in names]
 
 
-def apply_choice(case: Case, choice: Choice) -> PassageRun:
-    """Simulate a case with a choice.
+def vary_choice(case: Case, choice: Choice) -> Case:
+    """Case with the settings and the contact of a choice.
 
     Raises:
         NotApplicable: The files of the case do not allow the choice.
-        SimulationError: The run fails.
     """
     try:
         changes = tuple(build_change(key, value) for key, value in choice.settings.items())
@@ -257,9 +256,7 @@ def apply_choice(case: Case, choice: Choice) -> PassageRun:
         raise NotApplicable(str(problem)) from problem
     if changes and replace(varied, changes=()).digest == case.digest:
         raise NotApplicable("the case has this setting")
-    if choice.contact is not None:
-        varied = change_contact(varied, choice.contact)
-    return simulate_varied(varied, choice.treatment)
+    return varied if choice.contact is None else change_contact(varied, choice.contact)
 
 
 def change_contact(case: Case, contact: ContactTable) -> Case:

@@ -12,10 +12,12 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.line.library_folder import library_folder
 
+ON_REQUEST = ("force-law/300", "vovan2015/contact-force")
+
 
 def test_stored_files_belong_to_the_present_cases() -> None:
     """A changed case needs a new computation: the command of the file makes it."""
-    cases = {case.id: case for case in select_cases(["en50318-*"])}
+    cases = {case.id: case for case in select_cases(["en50318-*", *ON_REQUEST])}
     powers = [read_study(path, ResolvingPowerFile) for path in (library_folder() / "resolving-power").rglob("*.toml")]
     conditions = [read_study(path, ConditionsFile) for path in (library_folder() / "conditions").rglob("*.toml")]
     assert {"en50318-2002/250", "en50318-2002/300"} <= {file.case for file in powers}
@@ -29,7 +31,7 @@ def test_stored_files_belong_to_the_present_cases() -> None:
 
 
 def test_every_case_of_a_train_with_converged_values_has_conditions(case_250: Case) -> None:
-    trains = [case for case in select_cases(["en50318-*"]) if not case.is_static]
+    trains = [case for case in select_cases(["en50318-*", *ON_REQUEST]) if not case.is_static]
     for case in trains:
         rows = {condition.name: condition for condition in find_conditions(case.id).condition}
         assert {"contact by the law of Hertz", "contact by a constraint"} < set(rows)
