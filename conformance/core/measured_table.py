@@ -264,6 +264,7 @@ TABLE_FORMATS = (
     HDF5,
     TableFormat("tdms_table", (".tdms",), library="nptdms"),
     MDF,
+    TableFormat("parquet_table", (".parquet",), library="pyarrow"),
 )
 
 TABLE_SUFFIXES = tuple(suffix for table_format in TABLE_FORMATS for suffix in table_format.suffixes)

@@ -35,7 +35,9 @@ from pantocheck.conformance.records.channel_facts import (
 def describe_command(
     files: Annotated[
         list[Path],
-        typer.Argument(metavar="FILE ...", help="Files of a measurement: CSV, HDF5, MATLAB, UFF, TDMS or MDF."),
+        typer.Argument(
+            metavar="FILE ...", help="Files of a measurement: CSV, HDF5, MATLAB, UFF, TDMS, MDF or Parquet."
+        ),
     ],
     sidecar: Annotated[
         Path | None, typer.Option("--sidecar", "--out", help="Write a commented sidecar to this new file.")
