@@ -107,26 +107,13 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         return _assess_summary(path, header, profile, known_line)
     samples, sidecar, table = read_samples(path)
     try:
-        prepared = prepare_record(samples, sidecar, profile.filter, profile.speed_tolerance_pct)
+        prepared, events, exclusion_warnings = prepare_by_profile(samples, sidecar, profile, known_line)
     except RecordInvalid as error:
         raise build_record_error(table, error) from None
-    supports = list_line_supports(sidecar.support_position_m or (), known_line.span_m, prepared.section)
-    prepared = prepared.with_supports(supports)
-    excluded, events, exclusion_warnings = apply_exclusions(prepared.events, prepared.section, profile.exclusion)
-    prepared = replace(
-        prepared,
-        excluded=excluded,
-        pantographs={
-            number: replace(signals, shortest_loss_s=profile.shortest_contact_loss_s)
-            for number, signals in prepared.pantographs.items()
-        },
-    )
     tables = list_tables(path, sidecar)
     files = map(file_digest, (path.with_suffix(".toml"), *tables))
     digest = join_digests(*files, known_line.model_dump_json())
-    force_digest = _force_digest(samples)
-    missing = find_missing_statement(samples, sidecar)
-    evaluation = prepared.evaluation if missing is None else build_empty_evaluation(missing, prepared.pantographs)
+    force_digest = hash_force(samples)
     return AssessedRecord(
         name=path.stem,
         header=sidecar,
@@ -134,13 +121,52 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         digest=digest,
         record_digest=record_digest(path, *tables),
         force_digest=force_digest,
-        values=_add_line_quantities(evaluation, known_line, sidecar.speed_km_h),
+        values=evaluate_by_profile(prepared, samples, sidecar, known_line),
         uncertainty=assess_uncertainty(prepared, _span_length(known_line, sidecar), force_digest),
         prepared=prepared,
         notes=prepared.notes,
         warnings=(*prepared.warnings, *exclusion_warnings),
         events=events,
     )
+
+
+def prepare_by_profile(
+    samples: RecordSamples, sidecar: RecordSidecar, profile: Profile, line: LineTable
+) -> tuple[PreparedRecord, tuple[EventFacts, ...], tuple[str, ...]]:
+    """Signals of a record over its analysis section by the filter, supports and exclusions of a profile.
+
+    Args:
+        samples: Samples as read.
+        sidecar: Sidecar of the record.
+        profile: Profile with the filter and the speed tolerance.
+        line: Facts on the line.
+
+    Returns:
+        prepared: Signals over the analysis section.
+        events: Events of the analysis section.
+        warnings: Sentences on stretches that are left out or not.
+
+    Raises:
+        RecordInvalid: The record is impossible, or has no usable part.
+    """
+    prepared = prepare_record(samples, sidecar, profile.filter, profile.speed_tolerance_pct)
+    supports = list_line_supports(sidecar.support_position_m or (), line.span_m, prepared.section)
+    prepared = prepared.with_supports(supports)
+    excluded, events, warnings = apply_exclusions(prepared.events, prepared.section, profile.exclusion)
+    pantographs = {
+        number: replace(signals, shortest_loss_s=profile.shortest_contact_loss_s)
+        for number, signals in prepared.pantographs.items()
+    }
+    return replace(prepared, excluded=excluded, pantographs=pantographs), events, warnings
+
+
+def evaluate_by_profile(
+    prepared: PreparedRecord, samples: RecordSamples, sidecar: RecordSidecar, line: LineTable
+) -> Evaluation:
+    """Quantities of a prepared record, including those that follow from the line; other parameters as above."""
+    missing = find_missing_statement(samples, sidecar)
+    evaluation = prepared.evaluation if missing is None else build_empty_evaluation(missing, prepared.pantographs)
+    return _add_line_quantities(evaluation, line, sidecar.speed_km_h)
 
 
 def find_missing_statement(samples: RecordSamples, sidecar: RecordSidecar) -> str | None:
@@ -205,7 +231,7 @@ def _add_line_quantities(evaluation: Evaluation, line: LineTable, speed_km_h: fl
     return Evaluation({**evaluation.values, LINE: ordered}, {**evaluation.skipped, LINE: skipped})
 
 
-def _force_digest(samples: RecordSamples) -> str:
+def hash_force(samples: RecordSamples) -> str:
     """SHA-256 of the force, rounded to 1 mN: units and formats of files change the last digits only."""
     return hashlib.sha256((np.round(samples.force, 3) + 0.0).tobytes()).hexdigest()  # + 0.0: -0.0 is 0.0
 

@@ -24,6 +24,7 @@ from pantocheck.conformance.records.sidecar_tables import (
     EventTable,
     KilometreTable,
     MarkPosition,
+    MeasurementTable,
     PassageTable,
     PositionTable,
 )
@@ -41,6 +42,8 @@ class RecordSidecar(PassageTable, ColumnFile):
     """Inputs of the case that were changed with --set."""
     source: Annotated[tuple[SourceTable, ...], Field(strict=False, max_length=200)] = ()
     """Further files of the record, or columns of a file with another rate, each with its own clock."""
+    measurement: MeasurementTable | None = None
+    """Line, track and date, for `pantocheck runs import`."""
     track: KilometreTable | None = None
     """Kilometres of the line, if the positions are kilometres."""
     position: PositionTable | None = None
@@ -76,6 +79,11 @@ class RecordSidecar(PassageTable, ColumnFile):
                 f"{count_noun(len(self.spacing_m), 'distance')} for {count_noun(self.pantographs, 'pantograph')}",
                 "Give the distances between successive pantographs, in running order.",
             )
+
+        names = () if self.measurement is None else self.measurement.pantograph_names
+        if names and len(set(names)) != self.pantographs:
+            found = f"{count_noun(len(set(names)), 'different name')} for {count_noun(self.pantographs, 'pantograph')}"
+            yield validation_problem("measurement.pantograph_names", found, "Name each pantograph, or none.")
 
     @cross_check
     def _check_columns(self) -> Problems:

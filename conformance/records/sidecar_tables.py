@@ -1,5 +1,6 @@
 """Common tables and keys of sidecars and summaries of contact-force records: system, run, line, position, events."""
 
+import datetime
 from itertools import pairwise
 from typing import Annotated, Literal
 
@@ -37,6 +38,22 @@ class RunTable(InputTable):
     """Time step [s]."""
     element_m: Annotated[float | None, Field(gt=0)] = None
     """Element length [m]."""
+
+
+PartitionName = Annotated[str, Field(pattern=r"^\w[\w.-]{0,39}$")]
+
+
+class MeasurementTable(InputTable):
+    """Place and date of a measurement, for a collection of runs."""
+
+    line: PartitionName
+    """Name or number of the railway line: letters, digits, points and hyphens."""
+    track: PartitionName
+    """Name or number of the track."""
+    date: datetime.date
+    """Date of the run."""
+    pantograph_names: Annotated[tuple[PartitionName, ...], Field(strict=False, max_length=20)] = ()
+    """Names of the measuring pantographs in running order; default: their numbers."""
 
 
 StartCondition = Literal["equilibrium_under_uplift_forces", "line_at_rest", "other"]

@@ -55,6 +55,10 @@ PANELS: dict[str, dict[str, str]] = {
         "drop fit": "Fit a damping model of a line to identified modes.",
         "drop compare": "Compare a recorded mass drop with its simulation.",
     },
+    "runs": {
+        "runs import": "Add measured runs to a collection.",
+        "runs assess": "Assess every section of the lines of a collection.",
+    },
     "system": {
         "system check": "Check the adapter of a simulator with short cases.",
         "system self-test": "Test the suite with faulty systems.",
@@ -73,6 +77,7 @@ SHARED_FILES = {
     "measured_comparison": ("line statics", "pantograph compare", "drop compare"),
     "drop_simulate": ("drop campaign",),
     "drop_identify": ("drop fit",),
+    "runs": ("runs import", "runs assess"),
     "system_self_test": ("system check",),
 }
 """Begin of the names of files with several commands, each with its commands; another command has its own file."""

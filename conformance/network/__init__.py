@@ -1,0 +1,1 @@
+"""Collections of runs: many records of railway lines, and their assessment by sections."""

@@ -1,0 +1,183 @@
+"""Pages of an assessed collection: lines by kilometre, sections, worst places, and a page per run."""
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from pantocheck.conformance.core.figure_data import Chart, Series
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.core.verdicts import WORST_FIRST
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.study_chart import draw_chart
+from pantocheck.conformance.pages.words import clean_text, clean_tree, format_value, quantity_label, quantity_unit
+from pantocheck.conformance.results.network_format import (
+    ForcePlace,
+    NetworkResults,
+    SectionGroup,
+    SectionPassage,
+    TrackSection,
+)
+
+NETWORK_SCOPE = (
+    "A section passes if all passages over the whole of it pass. A section that no run measured as a whole is skipped. "
+    "The verdict is self-declared, in the style of EN 50318. passages.csv has every passage; the range of a mean is by "
+    "Student's t over the passages, and its coverage is not measured."
+)
+
+NETWORK_COLUMNS = ("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N", "contact_loss_pct")
+"""Quantities in the tables."""
+
+MOST_GROUPS = 20_000
+"""Largest number of sections on the page; those that do not pass come first where there are more."""
+
+
+def build_network_page(results: NetworkResults) -> doc.Document:
+    """First page of an assessed collection."""
+    results = clean_tree(results)
+    measured = f"{results.measured_km:.1f} of {results.total_km:.1f} km were measured as whole sections, "
+    headline = f"{measured}by {count_noun(results.runs, 'run')}. {results.reason}."
+    blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(results.verdict), " ", NETWORK_SCOPE))]
+    blocks += doc.warn(f"{refused.file} is not part of the assessment: {refused.reason}" for refused in results.refused)
+    suspicions = [f"run {run}: {remark}" for run, remarks in results.suspicious.items() for remark in remarks]
+    tracks = groupby(results.groups, key=lambda group: (group.section.line, group.section.track))
+    figures = tuple(_draw_track(*names, list(groups)) for names, groups in tracks)
+    blocks.append(doc.Section("Lines by kilometre", (doc.Figures(figures),)))
+    if results.places:
+        traced = [place for place in results.places if place.trace is not None]
+        drawn = doc.Section("Force at the worst places", (doc.Figures(tuple(map(_draw_place, traced))),), folded=True)
+        blocks.append(doc.Section("Worst places", (_tabulate_places(results.places), drawn)))
+    blocks.append(doc.Section("Sections", (_tabulate_groups(results.groups),)))
+    drifts = [doc.BulletList(tuple(_list_drifts(results.groups)))] if any(_list_drifts(results.groups)) else []
+    if drifts:
+        blocks.append(doc.Section("Changes between the dates", tuple(drifts)))
+    if suspicions:
+        blocks.append(doc.Section("Remarks on imported runs", (doc.BulletList(tuple(suspicions)),), folded=True))
+    facts = {
+        "Profile": results.profile,
+        "Lowest trust of the rules": results.trust,
+        "Grouped by": ", ".join(results.by),
+    }
+    suite = {"Suite": f"Pantocheck {results.suite.version}", "Digest of the suite": results.suite.digest}
+    blocks.append(doc.select_facts(facts | suite))
+    return doc.build_plain_document("Measured lines", headline, blocks)
+
+
+def build_run_page(run: str, passages: Sequence[SectionPassage]) -> doc.Document:
+    """Page of one run: its passages over the sections."""
+    passages = [clean_tree(passage) for passage in passages]
+    cells = {
+        **{doc.Column(text): call for text, call in _name_section_cells().items()},
+        doc.Column("Pantograph"): lambda x: x.pantograph,
+        doc.Column("Speed km/h", number=True): lambda x: format_value(x.speed_km_h),
+        doc.Column("Verdict"): lambda x: doc.VerdictMark(x.verdict),
+        **{_head(name): lambda x, name=name: format_value(x.values.get(name)) for name in NETWORK_COLUMNS},
+        doc.Column("Reason", share=1): lambda x: x.reason,
+    }
+    back = doc.Paragraph((doc.PageLink("All lines", "../index.html"),))
+    first = passages[0] if passages else None
+    parts = () if first is None else (first.section.line, first.section.track, str(first.date), first.direction)
+    headline = ", ".join(parts)
+    table = doc.make_table(passages, cells)  # type: ignore[arg-type]
+    return doc.build_plain_document(f"Run {clean_text(run)}", headline or "No section is passed.", (back, table))
+
+
+def _head(quantity: str) -> doc.Column:
+    return doc.Column(f"{quantity_label(quantity)} [{quantity_unit(quantity)}]", number=True)
+
+
+def _name_section_cells() -> dict[str, object]:
+    return {
+        "Line": lambda x: x.section.line,
+        "Track": lambda x: x.section.track,
+        "Section": lambda x: _name_section(x.section),
+    }
+
+
+def _name_section(section: TrackSection) -> str:
+    return f"{section.from_km:.3f} to {section.to_km:.3f} km {section.name}".strip()
+
+
+def _name_dates(group: SectionGroup) -> str:
+    return " to ".join(str(date) for date in dict.fromkeys(group.dates))
+
+
+def _tabulate_groups(groups: Sequence[SectionGroup]) -> doc.Table:
+    shown = list(groups)
+    if len(shown) > MOST_GROUPS:
+        shown = sorted(shown, key=lambda group: WORST_FIRST.index(group.verdict))[:MOST_GROUPS]
+    cells = {
+        **{doc.Column(text): call for text, call in _name_section_cells().items()},
+        doc.Column("Passages", number=True): lambda x: str(x.passages),
+        doc.Column("Dates"): _name_dates,
+        doc.Column("Speed km/h"): lambda x: "" if x.speed_km_h is None else "{:g} to {:g}".format(*x.speed_km_h),
+        doc.Column("Kilometres"): lambda x: x.direction or "",
+        doc.Column("Pantograph"): lambda x: x.pantograph or "",
+        doc.Column("Verdict"): lambda x: doc.VerdictMark(x.verdict),
+        **{_head(name): lambda x, name=name: _format_repeated(x, name) for name in NETWORK_COLUMNS},
+        doc.Column("Reason", share=1): lambda x: x.reason,
+        doc.Column("Run"): lambda x: _link_run(x.run) if x.run else "",
+    }
+    caption = "Filter by a date, speed, kilometre or verdict; the run is that of the worst passage"
+    return doc.make_table(shown, cells, caption)  # type: ignore[arg-type]
+
+
+def _format_repeated(group: SectionGroup, name: str) -> str:
+    value = group.values.get(name)
+    if value is None:
+        return "–"
+    return format_value(value.mean) + ("" if value.mean_range is None else f" ± {format_value(value.mean_range)}")
+
+
+def _link_run(run: str) -> doc.PageLink:
+    return doc.PageLink(run, f"runs/{run}.html")
+
+
+def _tabulate_places(places: Sequence[ForcePlace]) -> doc.Table:
+    cells = {
+        doc.Column("Line"): lambda x: x.line,
+        doc.Column("Track"): lambda x: x.track,
+        doc.Column("km", number=True): lambda x: f"{x.km:.3f}",
+        doc.Column("Force N", number=True): lambda x: format_value(x.force_N),
+        doc.Column("Deviation", number=True): lambda x: f"{x.deviation:.1f}",
+        doc.Column("Seen in"): lambda x: f"{x.found} of {x.passages}",
+        doc.Column("Date"): lambda x: str(x.date),
+        doc.Column("Pantograph"): lambda x: x.pantograph,
+        doc.Column("Place", share=1): lambda x: x.place,
+        doc.Column("Explained"): lambda x: "yes" if x.explained else "no",
+        doc.Column("Run"): lambda x: _link_run(x.run),
+    }
+    caption = "Deviation of the filtered force from the median of its section, in robust standard deviations"
+    return doc.make_table(places, cells, caption)
+
+
+def _draw_track(line: str, track: str, groups: Sequence[SectionGroup]) -> doc.Figure:
+    """Mean force of the sections of a track by kilometre, one series per verdict; 0 where it was not measured."""
+    series = []
+    for verdict in WORST_FIRST:
+        here = [group for group in groups if group.verdict == verdict]
+        if here:
+            x = [(group.section.from_km + group.section.to_km) / 2 for group in here]
+            y = [group.values["mean_force_N"].mean if "mean_force_N" in group.values else 0.0 for group in here]
+            style = "crosses" if verdict in ("error", "fail", "skip") else "points"
+            series.append(Series(label=verdict, style=style, x=x, y=y))
+    caption = f"Line {line}, track {track}: mean force of the sections; 0 where none is known."
+    return _draw(caption, "kilometre", "mean force [N]", series)
+
+
+def _draw_place(place: ForcePlace) -> doc.Figure:
+    caption = f"Line {place.line}, track {place.track}, {place.km:.3f} km, {place.date}, run {place.run} {place.place}"
+    assert place.trace is not None  # chosen by the caller
+    return _draw(f"{caption.strip()}.", "kilometre", "filtered force [N]", [place.trace])
+
+
+def _draw(caption: str, x_label: str, y_label: str, series: list[Series]) -> doc.Figure:
+    alternative = f"{caption} The values are in the tables."
+    chart = Chart(caption=caption, alternative=alternative, x_label=x_label, y_label=y_label, series=series)
+    return doc.Figure(draw_chart(chart), alternative, caption)
+
+
+def _list_drifts(groups: Sequence[SectionGroup]) -> Iterator[str]:
+    for group in groups:
+        for name, value in group.values.items():
+            if value.drifts and value.drift is not None:
+                place = f"line {group.section.line}, track {group.section.track}, {_name_section(group.section)}"
+                yield f"{place}: {quantity_label(name)} changes by {value.drift:.3g} {quantity_unit(name)}"

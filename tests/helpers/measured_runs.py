@@ -1,0 +1,53 @@
+"""Logger files of measured runs, with a force that is known."""
+
+from pathlib import Path
+
+import numpy as np
+import tomli_w
+
+RATE = 500.0
+
+
+def write_run(
+    folder: Path,
+    name: str,
+    *,
+    ends_km: tuple[float, float] = (9.9, 12.1),
+    day: int = 1,
+    speed_km_h: float = 250.0,
+    mean: float = 100.0,
+    dip_km: float | None = None,
+    seed: int = 0,
+) -> Path:
+    """Write a German logger file (kN, decimal comma) with its sidecar; the kilometres run from the first to the last.
+
+    The force has a sigma of 20 N by spans of 50 m and noise; a dip of 150 N and 2 m is a broken dropper.
+    """
+    random = np.random.default_rng((37, seed))
+    begin, end = ends_km
+    time = np.arange(0, 3600 * abs(end - begin) / speed_km_h, 1 / RATE)
+    km = begin + np.sign(end - begin) * speed_km_h / 3600 * time
+    force = mean + 28 * np.sin(2 * np.pi * km / 0.05) + random.normal(0, 3, time.size)
+    if dip_km is not None:
+        force -= 150 * np.exp(-((1000 * (km - dip_km)) ** 2) / 8)
+    rows = np.column_stack([time, km, force / 1000])
+    lines = ["Zeit [s];km;Kraft [kN]", *(";".join(f"{x:.6f}" for x in row).replace(".", ",") for row in rows)]
+    path = folder / f"{name}.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    sidecar = {
+        "schema": "pantocheck.record/1",
+        "file": path.name,
+        "speed_km_h": speed_km_h,
+        "pantographs": 1,
+        "filter_applied_Hz": "none",
+        "line": {"wave_speed_m_s": 120.0, "uplift_space_mm": 120.0},
+        "columns": {
+            "time_s": {"column": "Zeit [s]"},
+            "position_1_m": {"column": "km", "unit": "km"},
+            "force_1_N": {"column": "Kraft [kN]"},
+        },
+        "track": {"zero_km": begin, "kilometres": "increasing" if end > begin else "decreasing"},
+    }
+    text = tomli_w.dumps(sidecar) + f'\n[measurement]\nline = "1700"\ntrack = "2"\ndate = 2026-05-{day:02d}\n'
+    path.with_suffix(".toml").write_text(text, encoding="utf-8")
+    return path
