@@ -13,7 +13,10 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted(DOCS.glob("*.md")), *sorted(DOCS.glob("tutorials/*.md"))]
-HOW_TO = ("compare", "identity", "pantograph-response", "pytest", "python", "site", "systems", "verification", "verify")
+HOW_TO = (
+    "compare", "identity", "line-update", "pantograph-response", "pytest", "python",
+    "site", "systems", "verification", "verify",
+)  # fmt: skip
 """Pages whose blocks run in their order."""
 
 

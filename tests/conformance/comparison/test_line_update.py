@@ -1,7 +1,9 @@
 """Line as built: planted errors are found by static measurements, modes and passages; another passage judges it."""
 
+import csv
 import json
 import shutil
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +12,7 @@ import pytest
 
 from helpers.command_line import pantocheck
 from helpers.static_records import LINE_PATH, measure_line, read_unequal_line, write_static_record
-from helpers.toml_edit import edit_toml
+from helpers.toml_edit import edit_toml, write_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.library import select_cases
@@ -21,6 +23,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.line_parameters import DAMPING, MECHANICAL, scale_line
+from pantocheck.conformance.pages.words import format_value
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.identified_modes import ModesFile
 from pantocheck.conformance.runs.case_run import run_passage
@@ -132,6 +135,69 @@ def record_passages(folder: Path, cases: dict[str, Case], built: Catenary) -> li
     return paths
 
 
+@pytest.fixture(scope="module")
+def measured_line(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with a case of two pantographs 20 m apart, whose line was updated by a passage."""
+    folder = tmp_path_factory.mktemp("measured")
+    cases = write_passages(folder / "cases")
+    built = scale_line(build_catenary(cases["a"].line), MECHANICAL[:2], (1.01, 0.99))
+    record = record_passages(folder / "records", {"a": cases["a"]}, built)[0]
+    line = folder / "cases" / "line.toml"
+    result = pantocheck(
+        *("line", "update", line, "--passages", record, "--cases", folder / "cases", "--out", folder / "as-built.toml")
+    )
+    assert result.exit_code == 3, result.output
+    shutil.copy(folder / "as-built.toml", line)
+    twin = folder / "cases" / "a.toml"
+    content = tomllib.loads(twin.read_text())
+    limit = next(row for row in content["limit"] if row["quantity"] == "std_force_N")
+    rows = [{**limit, "pantograph": number, "upper": 60.0} for number in (1, 2)]
+    edit_toml(twin, {"pantograph": 2 * content["pantograph"], "spacing_m": [20.0], "limit": rows})
+    return folder / "cases"
+
+
+def test_certificate_of_an_updated_line_prints_its_covariance_at_both_pantographs(
+    measured_line: Path, tmp_path: Path
+) -> None:
+    """Printed half-widths are those of the components, with two digits; without [tolerance] there is one alone."""
+    options = ("--verdicts", "criteria", "--trust", "provisional", "--formats", "json,html,md")
+    pantocheck("run", "own/a", "--cases", measured_line, "--out", tmp_path / "run", *options)
+    (case,) = json.loads((tmp_path / "run" / "results.json").read_text())["cases"]
+    assert case["uncertainty_basis"]["line"].startswith("9 runs on lines one standard deviation away")
+    rows = [row for row in case["criteria"] if row["quantity"] == "std_force_N"]
+    assert [row["pantograph"] for row in rows] == [1, 2]
+    page = (tmp_path / "run" / "certificate.html").read_text()
+    for row in rows:
+        parts = row["components"]
+        assert 0.1 < parts["line"] < 10
+        assert row["uncertainty"] > 0.9 * parts["line"]
+        numerics = np.sqrt(sum(width**2 for name, width in parts.items() if name != "line"))
+        text = f"± {format_value(numerics, 2)} (numerics) ± {format_value(parts['line'], 2)} (line as measured)"
+        assert text in page
+        assert text in (tmp_path / "run" / "summary.md").read_text().replace("\\", "")
+    shutil.copytree(measured_line, tmp_path / "exact")
+    edit_toml(tmp_path / "exact" / "line.toml", {"tolerance": None})
+    pantocheck("run", "own/a", "--cases", tmp_path / "exact", "--out", tmp_path / "known", *options)
+    assert "(line as measured)" not in (tmp_path / "known" / "certificate.html").read_text()
+
+
+def test_refined_campaign_contains_the_covariance_of_an_updated_line(measured_line: Path, tmp_path: Path) -> None:
+    """Width of a run of a campaign is that of the same run alone; draws with the same seed, so to rounding."""
+    campaign = {"cases": ["own/a"], "case_folders": [str(measured_line)], "refined": True}
+    campaign |= {"vary": [{"key": "speed_km_h", "values": [250.0]}]}
+    write_toml(tmp_path / "campaign.toml", campaign)
+    result = pantocheck("campaign", tmp_path / "campaign.toml", "--out", tmp_path / "many", "--workers", 1)
+    (row,) = csv.DictReader((tmp_path / "many" / "campaign.csv").read_text().splitlines())
+    options = ("--set", "speed_km_h=250.0", "--formats", "json")
+    pantocheck("run", "own/a", "--cases", measured_line, "--out", tmp_path / "run", *options)
+    (case,) = json.loads((tmp_path / "run" / "results.json").read_text())["cases"]
+    for number in ("1", "2"):
+        by_line = case["uncertainty_components"][number]["std_force_N"]["line"]
+        width = float(row[f"{number}.std_force_N.uncertainty"])
+        assert width == pytest.approx(case["uncertainty"][number]["std_force_N"], rel=1e-5), result.output
+        assert width > 0.9 * by_line > 0
+
+
 @pytest.mark.parametrize(("clamp_kg", "verdict", "code"), [(0.0, "pass", 0), (0.4, "fail", 1)])
 def test_the_held_out_passage_judges_the_form_of_the_model(
     tmp_path: Path, clamp_kg: float, verdict: str, code: int
@@ -153,7 +219,7 @@ def test_the_held_out_passage_judges_the_form_of_the_model(
     assert (data["verdict"], result.exit_code) == (verdict, code)
     assert [part["name"] for part in data["data"]] == ["a", "b"]
     assert (data["probability"] >= 0.01) == (verdict == "pass")
-    assert {row["quantity"] for row in data["held_out"]} == {"rms_0_5_N", "rms_5_20_N", "rms_20_50_N"}
+    assert [row["quantity"] for row in data["held_out"]] == [f"rms_{low}_{low + 5}_N" for low in range(0, 50, 5)]
     assert all(row["line_std"] > 0 for row in data["held_out"])
     other = pantocheck(
         *("line", "update", LINE_PATH, "--passages", a),
