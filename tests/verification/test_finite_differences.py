@@ -135,7 +135,7 @@ def test_static_uplift_is_an_equilibrium_of_the_time_step(name: str) -> None:
     displacement, n = line.uplift.displacement(load), load.size
     velocity = np.zeros(n)
     nothing = np.zeros(0, dtype=np.int64)
-    march(line.arrays, distant_heads(), displacement, velocity, np.zeros((1, 1)), np.zeros((0, 1)), nothing, 1)
+    march(line.arrays, distant_heads(), displacement, velocity, np.zeros((1, 1, 1)), np.zeros((0, 1)), nothing, 1)
     moving = line.arrays.gain > 0
     # Rounding: bending forces of 1e5 N/m times displacements of 1e-3 m, to 1e-13.
     assert velocity[moving] / line.arrays.gain[moving] == pytest.approx(-load[moving], abs=1e-6)
@@ -318,14 +318,15 @@ def test_two_strips_start_as_the_derived_values_state() -> None:
 
 
 def test_two_strips_agree_with_the_reference_simulator() -> None:
-    """Five spans of AC simple at 320 km/h: within 3 % at 0.25 m; docs/head.md compares finer meshes."""
+    """Five spans of AC simple at 320 km/h: sum and strips within 2 % at 0.125 m; docs/head.md compares finer meshes."""
     changed = with_two_strips(CASES[1], 5)
     section = {"evaluated_spans": (2, 3), "start_m": 20.0, "run_out_m": 70.0}
     changed = replace(changed, file=changed.file.model_copy(update=section))
-    second = difference_quantities(message(changed), 0.25, (169.0,))
-    reference = reference_quantities(changed, 0.5, 1e-3, (169.0,))
+    second = difference_quantities(message(changed), 0.125, (169.0,))
+    reference = reference_quantities(changed, 0.25, 5e-4, (169.0,))
+    assert second.keys() == reference.keys() >= {(1, "front rms_20_50_N"), (1, "rear rms_20_50_N")}
     for key, value in second.items():
-        assert value == pytest.approx(reference[key], rel=0.03), key
+        assert value == pytest.approx(reference[key], rel=0.02), key
 
 
 def test_curve_and_irregularity_change_the_state_at_rest() -> None:

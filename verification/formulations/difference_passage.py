@@ -31,12 +31,17 @@ Quantities = dict[tuple[int, str], float]
 
 @dataclass(frozen=True)
 class Passage:
-    """Contact forces [N] and positions [m], (P, T) each, uplift of the supports (U, S) [m] and time step [s]."""
+    """Strip forces (P, strips, T) [N], positions (P, T) [m], uplift of the supports (U, S) [m] and time step [s]."""
 
-    force: Floats
+    strip_force: Floats
     position: Floats
     uplift: Floats
     step: float
+
+    @property
+    def force(self) -> Floats:
+        """Contact force of every pantograph, (P, T) [N]."""
+        return np.asarray(self.strip_force.sum(axis=1))
 
 
 def simulate(case: CaseData, model: Model, uplift_forces: tuple[float, ...]) -> Passage:
@@ -52,7 +57,7 @@ def simulate(case: CaseData, model: Model, uplift_forces: tuple[float, ...]) -> 
     )
     displacement = model.uplift.displacement(rest)
     heads = build_heads(case, model, starts, uplift_forces, displacement)
-    force = np.zeros((starts.size, steps))
+    force = np.zeros((*heads.offset.shape, steps))
     every = max(1, int(RECORDING_STEP / arrays.step + 1e-9))
     start, end = case["evaluated_m"]
     watched = np.array([model.contact.point(x) for x in model.line.supports if start - 1e-6 <= x <= end + 1e-6])
@@ -247,15 +252,22 @@ def force_quantities(
     return dict(zip(QUANTITIES, map(float, values), strict=True))
 
 
+def name_forces(strips: Floats) -> dict[str, Floats]:
+    """Contact force of a pantograph and, if it has two, of its strips (S, T) [N], by the prefix of their quantities."""
+    sum_of_strips = {"": strips.sum(axis=0)}
+    return sum_of_strips if len(strips) == 1 else sum_of_strips | dict(zip(("front ", "rear "), strips, strict=True))
+
+
 def difference_quantities(case: CaseData, spacing: float, uplift_forces: tuple[float, ...]) -> Quantities:
     """Quantities of a case, as a program receives it, in the second formulation."""
     model = build_model(build_line(case), spacing)
     passage = simulate(case, model, uplift_forces)
     section, low_pass, values = case["evaluated_m"], Filter(**case["filter"]), Quantities()
     bands = case["derived"]["train"]["evaluation"]["bands_Hz"]
-    for k, (force, position) in enumerate(zip(passage.force, passage.position, strict=True), 1):
-        quantities = force_quantities(force, position, 1 / passage.step, section, low_pass, bands)
-        values |= {(k, name): value for name, value in quantities.items()}
+    for k, (strips, position) in enumerate(zip(passage.strip_force, passage.position, strict=True), 1):
+        for channel, force in name_forces(strips).items():
+            quantities = force_quantities(force, position, 1 / passage.step, section, low_pass, bands)
+            values |= {(k, channel + name): value for name, value in quantities.items()}
     start = section[0]
     end = min(x for x in model.line.span_limits if x > start)
     lifts = [model.static_uplift(x, 1.0) for x in ((start + end) / 2, start)]

@@ -183,20 +183,20 @@ def march(
     watched: Indices,
     every: int,
 ) -> None:
-    """Advance line and pantographs by force.shape[1] steps.
+    """Advance line and pantographs by force.shape[2] steps.
 
     Args:
         line: Arrays of the line.
         heads: Pantographs; positions, heights and velocities are advanced in place.
         w, v: Displacement from the state of rest and velocity, advanced in place, (N,) [m, m/s].
-        force: Contact force at the start of every step, the sum over the strips, added to its content, (P, T) [N].
+        force: Filled with the contact force of every strip at the start of every step, (P, S, T) [N].
         uplift: Filled with the displacement of the watched points at every `every`-th step, (U, (T - 1) // every + 1)
             [m].
         watched: Watched points, (U,).
         every: Steps between two recorded displacements.
     """
     p, before, tension = w.copy(), np.zeros(line.special.size), np.zeros(line.bar_stiffness.size)
-    for t in range(force.shape[1]):
+    for t in range(force.shape[2]):
         if t % every == 0:
             for j in range(watched.size):
                 uplift[j, t // every] = w[watched[j]]
@@ -206,7 +206,7 @@ def march(
         for k in range(force.shape[0]):
             accelerate_pantograph(heads, k, line.step)
             for strip in range(heads.offset.shape[1]):
-                force[k, t] += push_wire(line, heads, k, strip, w, v)
+                force[k, strip, t] = push_wire(line, heads, k, strip, w, v)
             heads.height[k] += line.step * heads.velocity[k]
             heads.position[k] += heads.speed * line.step
         _join_parts(line, v, p)
