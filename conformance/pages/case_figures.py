@@ -144,11 +144,12 @@ STRIP_COLORS = {"front strip": "#9c6b30", "rear strip": "#3f7d8c"}
 @render_svg
 def draw_force(trace: Traces, reference: list[float]) -> Figure:
     """Contact force of one pantograph over its reference, if any."""
-    figure, [[axes]] = add_panels(PanelGrid(FULL, 1.55, right=0.18, top=0.44 if reference else 0.28))
+    strips = tuple(zip(trace.strip_forces_N or (), STRIP_COLORS.items(), strict=False))
+    figure, [[axes]] = add_panels(PanelGrid(FULL, 1.55, right=0.18, top=0.44 if reference or strips else 0.28))
     position = trace.position_m
     if trace.force_N:
         axes.plot(position, trace.force_N, color=GREY, linewidth=0.6, label="unfiltered")
-    for force, (label, color) in zip(trace.strip_forces_N or (), STRIP_COLORS.items(), strict=False):
+    for force, (label, color) in strips:
         axes.plot(position, force, color=color, linewidth=0.5, label=label)
     if reference:
         axes.plot(position, reference, **REFERENCE_STYLE)
@@ -160,7 +161,7 @@ def draw_force(trace: Traces, reference: list[float]) -> Figure:
     axes.set(xlim=(position[0], position[-1]), xlabel="position along the track [m]", ylabel="contact force [N]")
     if 1 < len(trace.supports_m) <= MOST_SUPPORT_TICKS:
         axes.set_xticks(trace.supports_m, [f"{support:g}" for support in trace.supports_m])
-    add_legend(axes, 3 if reference else 5)
+    add_legend(axes, 4 if strips else 3 if reference else 5)
     return figure
 
 

@@ -8,7 +8,7 @@ from itertools import groupby
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import TextTable
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.core.units import UNIT_FAMILIES, find_unit, key_suffix
+from pantocheck.conformance.core.units import UNIT_FAMILIES, key_suffix
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_case_figures
 from pantocheck.conformance.pages.condition_sections import build_condition_section, condition_blocks, mark_values
@@ -258,6 +258,10 @@ KEY_UNITS = {
     "C": "°C",
     "K": "K",
     "1_K": "1/K",
+    "kg_m2": "kg m2",
+    "N_m_rad": "N m/rad",
+    "N_m_s_rad": "N m s/rad",
+    "m_N_s": "m/(N s)",
     "m3": "m3",
     "deg": "°",
     "dB": "dB",
@@ -315,8 +319,7 @@ def _is_single(group: str, key: str, single: set[str]) -> bool:
 
 def _describe_value(key: str, value: StoredValue) -> str:
     """Name, value and unit of an input: `tension 20000 N`."""
-    suffix = next((unit for unit in ("1_s", "1_m", "1_K") if key.endswith(f"_{unit}")), None) or find_unit(key)
-    suffix = suffix or next((unit for unit in KEY_UNITS if key.endswith(f"_{unit}")), None)
+    suffix = max((unit for unit in KEY_UNITS if key.endswith(f"_{unit}")), key=len, default=None)
     name = key.removesuffix(f"_{suffix}").replace("_", " ").replace(".", ", ")
     return f"{name} {_format_input(value)} {KEY_UNITS[suffix] if suffix else ''}".rstrip()
 

@@ -71,6 +71,9 @@ LEFT, RIGHT = 1.05, 2.35
 SPRING_X, DAMPER_X = 1.45, 1.95
 """Positions of springs and dampers [in]."""
 
+STRIP_EDGES = ((0.6, 1.12), (2.3, 2.82))
+"""Edges of the strips on springs, from front to rear [in]."""
+
 LONGEST_MASS_NAME = 14
 """Largest number of characters of the name of a mass, which its box holds."""
 
@@ -87,14 +90,17 @@ class DrawnChain:
     """Name of each mass."""
     lifted: int
     """Index of the mass on which the uplift force acts."""
-    contact_stiffness: float
-    """Stiffness of the contact [N/m]."""
+    contact: str
+    """Stiffness of the contact with its unit; `hertz` or `constraint` for these laws."""
+    strips: tuple[tuple[float, float, float], ...] = ()
+    """Mass [kg], spring [N/m] and damper [N s/m] of each strip on a spring, from front to rear."""
 
 
 @render_svg
 def draw_chain(chain: DrawnChain) -> Figure:
     """Scheme of a chain; a spring or damper of 0 is left out."""
-    wire = BOTTOM + len(chain.masses) * (GAP + BOX) + GAP
+    levels = len(chain.masses) + bool(chain.strips)
+    wire = BOTTOM + levels * (GAP + BOX) + GAP
     figure = Figure(figsize=(HALF, wire + 0.1))
     figure.set_layout_engine("none")
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -104,17 +110,37 @@ def draw_chain(chain: DrawnChain) -> Figure:
     values = zip(chain.masses, chain.stiffness, chain.damping, chain.names, strict=True)
     for number, (mass, stiffness, damping, name) in enumerate(values):
         below = BOTTOM + number * (GAP + BOX)
-        _draw_spring(axes, SPRING_X, below, stiffness)
-        _draw_damper(axes, below, damping)
-        middle = below + GAP + BOX / 2
-        axes.fill_between([LEFT, RIGHT], middle - BOX / 2, middle + BOX / 2, facecolor=PALE, edgecolor=INK)
-        _write(axes, (LEFT + RIGHT) / 2, middle, f"{_shorten(name)} {format_plain(mass)} kg", "center")
+        text = f"{_shorten(name)} {format_plain(mass)} kg"
+        _draw_mass(axes, (LEFT, RIGHT), below, text, (SPRING_X, stiffness), (DAMPER_X, damping))
         if number == chain.lifted:
-            _draw_uplift_force(axes, middle)
-    _draw_spring(axes, (LEFT + RIGHT) / 2, wire - GAP, chain.contact_stiffness)
+            _draw_uplift_force(axes, below + GAP + BOX / 2)
+    carrier = wire - 2 * GAP - BOX
+    for edges, (mass, stiffness, damping) in zip(STRIP_EDGES, chain.strips, strict=False):
+        axes.plot([edges[0], (LEFT + RIGHT) / 2, edges[1]], 3 * [carrier], color=INK, linewidth=0.9)
+        places = (edges[0] + 0.12, stiffness), (edges[1] - 0.12, damping)
+        _draw_mass(axes, edges, carrier, f"{format_plain(mass)} kg", *places)
+    for left, right in STRIP_EDGES[: len(chain.strips)] or ((LEFT, RIGHT),):
+        _draw_spring(axes, (left + right) / 2, wire - GAP, chain.contact)
     axes.plot([0.7, 2.7], [wire, wire], color=INK, linewidth=1.8)
     _write(axes, 2.75, wire, "contact wire", "left")
     return figure
+
+
+def _draw_mass(
+    axes: Axes,
+    edges: tuple[float, float],
+    below: float,
+    text: str,
+    spring: tuple[float, float],
+    damper: tuple[float, float],
+) -> None:
+    """Mass with its text, on a spring and a damper at their places, from `below` upwards."""
+    if spring[1]:
+        _draw_spring(axes, spring[0], below, f"{format_plain(spring[1])} N/m")
+    _draw_damper(axes, *damper, below)
+    bottom = below + GAP
+    axes.fill_between(edges, bottom, bottom + BOX, facecolor=PALE, edgecolor=INK)
+    _write(axes, sum(edges) / 2, bottom + BOX / 2, text, "center")
 
 
 def _draw_base(axes: Axes) -> None:
@@ -123,27 +149,24 @@ def _draw_base(axes: Axes) -> None:
         axes.plot([x - 0.08, x], [BOTTOM - 0.08, BOTTOM], color=GREY, linewidth=0.7)
 
 
-def _draw_spring(axes: Axes, x: float, below: float, stiffness: float) -> None:
-    """Spring from `below` upwards, with its stiffness on the left."""
-    if stiffness == 0:
-        return
-    offset = 0.06 * np.array([0, 0, 1, -1, 1, -1, 1, -1, 0, 0])
+def _draw_spring(axes: Axes, x: float, below: float, text: str) -> None:
+    """Spring from `below` upwards, with its stiffness on the left; a contact without a spring is a line."""
+    offset = 0.06 * np.array([0, 0, 1, -1, 1, -1, 1, -1, 0, 0]) * (text != "constraint")
     height = np.array([0.0, 0.18, 0.24, 0.35, 0.46, 0.57, 0.68, 0.77, 0.82, 1.0])
     axes.plot(x + offset, below + GAP * height, color=INK, linewidth=0.9)
-    _write(axes, x - 0.12, below + GAP / 2, f"{format_plain(stiffness)} N/m", "right")
+    _write(axes, x - 0.12, below + GAP / 2, text, "right")
 
 
-def _draw_damper(axes: Axes, below: float, damping: float) -> None:
+def _draw_damper(axes: Axes, x: float, damping: float, below: float) -> None:
     """Damper from `below` upwards, a piston in a cylinder, with its value on the right."""
     if damping == 0:
         return
     low, piston, top = below + 0.3 * GAP, below + 0.52 * GAP, below + 0.7 * GAP
-    cylinder = [(-0.07, top), (-0.07, low), (0.07, low), (0.07, top)]
-    axes.plot([DAMPER_X + x for x, _ in cylinder], [y for _, y in cylinder], color=INK, linewidth=0.9)
-    axes.plot([DAMPER_X, DAMPER_X], [below, low], color=INK, linewidth=0.9)
-    axes.plot([DAMPER_X, DAMPER_X], [piston, below + GAP], color=INK, linewidth=0.9)
-    axes.plot([DAMPER_X - 0.05, DAMPER_X + 0.05], [piston, piston], color=INK, linewidth=1.6)
-    _write(axes, DAMPER_X + 0.12, below + GAP / 2, f"{format_plain(damping)} N s/m", "left")
+    axes.plot([x - 0.07, x - 0.07, x + 0.07, x + 0.07], [top, low, low, top], color=INK, linewidth=0.9)
+    axes.plot([x, x], [below, low], color=INK, linewidth=0.9)
+    axes.plot([x, x], [piston, below + GAP], color=INK, linewidth=0.9)
+    axes.plot([x - 0.05, x + 0.05], [piston, piston], color=INK, linewidth=1.6)
+    _write(axes, x + 0.12, below + GAP / 2, f"{format_plain(damping)} N s/m", "left")
 
 
 def _draw_uplift_force(axes: Axes, middle: float) -> None:
@@ -227,8 +250,11 @@ def draw_line_sketch(case: CaseResult) -> tuple[doc.Figure, ...]:
 
 def name_pantographs(case: CaseResult) -> str:
     """Number, masses and distances of the pantographs of a case; the number alone of those that are no chains."""
-    masses = [(", ".join(map(format_plain, chain.masses)), names) for chain, names in _read_chains(case).items()]
-    texts = [f"{len(names)} × masses {values} kg" for values, names in masses]
+    texts = []
+    for chain, names in _read_chains(case).items():
+        texts.append(f"{len(names)} × masses {', '.join(map(format_plain, chain.masses))} kg")
+        if chain.strips:
+            texts[-1] += f" and strips {', '.join(format_plain(mass) for mass, *_ in chain.strips)} kg"
     number = sum(key != "0" for key in case.quantities)
     spacing = next((group.values["spacing_m"] for group in case.inputs if "spacing_m" in group.values), None)
     shown = ", ".join(map(format_plain, _list_numbers(spacing)))
@@ -256,6 +282,10 @@ DRAWN_KEYS = ("masses_kg", "stiffness_N_m", "damping_N_s_m")
 """Keys of the values of a chain, base to head."""
 
 
+SPRINGLESS = ("hertz", "constraint")
+"""Contact laws without a stiffness."""
+
+
 def scheme_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc.Figure, ...]:
     """Scheme of every chain of a case that no earlier case has; parameters as in `line_figures`."""
     known = {chain for other in earlier for chain in _read_chains(other)}
@@ -268,23 +298,30 @@ def _read_chains(case: CaseResult) -> dict[DrawnChain, list[str]]:
     chains: dict[DrawnChain, list[str]] = defaultdict(list)
     for group, content in values.items():
         name = group.removesuffix(".chain")
-        chain = _read_chain(content, values.get(f"{name}.contact", {})) if name != group else None
+        parts = (values.get(f"{name}.{part}", {}) for part in ("contact", "head"))
+        chain = _read_chain(content, *parts) if name != group else None
         if chain is not None:
             chains[chain].append(name)
     return chains
 
 
-def _read_chain(values: StoredValues, contact: StoredValues) -> DrawnChain | None:
+def _read_chain(values: StoredValues, contact: StoredValues, head: StoredValues) -> DrawnChain | None:
     """Chain of a group of inputs; None where values are missing, or are stored as a range."""
     masses, stiffness, damping = (_list_numbers(values.get(key)) for key in DRAWN_KEYS)
-    contact_stiffness = _list_numbers(contact.get("stiffness_N_m"))
-    if not masses or len({len(masses), len(stiffness), len(damping)}) > 1 or len(contact_stiffness) != 1:
+    spring, law = _list_numbers(contact.get("stiffness_N_m")), str(contact.get("law", ""))
+    if (
+        not masses
+        or len({len(masses), len(stiffness), len(damping)}) > 1
+        or not (len(spring) == 1 or law in SPRINGLESS)
+    ):
         return None
     names = _list_names(values.get("names"), len(masses))
     # The uplift force acts on the lowest mass unless the file names another one (key uplift_force_on).
     point = values.get("uplift_force_on", 1.0)
     lifted = names.index(point) if point in names else int(point) - 1 if isinstance(point, float) else 0
-    return DrawnChain(masses, stiffness, damping, names, lifted, contact_stiffness[0])
+    strips = (_list_numbers(head.get(f"strip.{key}")) for key in ("mass_kg", "stiffness_N_m", "damping_N_s_m"))
+    text = f"{format_plain(spring[0])} N/m" if spring else law
+    return DrawnChain(masses, stiffness, damping, names, lifted, text, tuple(zip(*strips, strict=False)))
 
 
 def _list_numbers(value: StoredValue | None) -> tuple[float, ...]:

@@ -5,11 +5,18 @@ function level(label, value, count, style) {
   return { label, values: Array(count).fill(value), width: 1, ...style };
 }
 
+/** Forces of the front and the rear strip; none of a head with one strip. */
+function stripForces(trace) {
+  return trace.strip_forces_N ?? [];
+}
+
 /** Curves of a force: that of the reference behind it, as delivered, filtered, and its levels. */
 function forceCurves(trace, reference) {
   const count = trace.position_m.length;
   const curves = reference.length ? [{ label: translate("reference, 0–20 Hz"), values: reference, colour: "curve-2", width: 2 }] : [];
   curves.push({ label: translate("unfiltered"), values: trace.force_N, colour: "faint", width: 1 });
+  const names = [translate("front strip"), translate("rear strip")];
+  stripForces(trace).forEach((values, i) => curves.push({ label: names[i], values, colour: `curve-${3 * (i + 1)}`, width: 1 }));
   if (trace.force_20_N) curves.push({ label: "0–20 Hz", values: trace.force_20_N, colour: "ink", width: 2 });
   if (trace.std_N !== null) {
     curves.push(level(translate("mean"), trace.mean_N, count, { colour: "ink", dash: [9, 3, 2, 3] }));
@@ -55,8 +62,10 @@ class ForceView {
       ...{ label: fill(translate("Contact force of {t}"), { t: name }), xLabel: translate("position along the track [m]") },
       ...{ xUnit: "m", yLabel: translate("contact force [N]"), yUnit: "N", height: 300, x, lines, curves: forceCurves(this.trace, reference) },
     });
+    const strips = stripForces(this.trace);
     const headings = ["position_m", "force_N", "force_20_N", ...(reference.length ? ["reference_force_20_N"] : [])];
-    const beside = (i) => (reference.length ? [reference[i]] : []);
+    headings.push(...["front_strip_N", "rear_strip_N"].slice(0, strips.length));
+    const beside = (i) => [...(reference.length ? [reference[i]] : []), ...strips.map((force) => force[i])];
     const makeRows = () => x.map((place, i) => [place, this.trace.force_N[i], this.trace.force_20_N?.[i], ...beside(i)]);
     const save = saveButton(translate("Curves as CSV"), fileName(this.case, name, "force"), headings, makeRows);
     this.tools = [...this.plot.makeButtons(), save];

@@ -4,7 +4,7 @@ from typing import Any
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import build_ungraded
-from pantocheck.conformance.pages.line_figure import DrawnChain, draw_chain, scheme_figures
+from pantocheck.conformance.pages.line_figure import DrawnChain, draw_chain, name_pantographs, scheme_figures
 from pantocheck.conformance.results.results_format import CaseResult, InputGroup
 
 
@@ -43,11 +43,23 @@ def test_scheme_has_the_values_of_its_chain() -> None:
     assert ">0 N s/m<" not in figure.svg
 
 
+def test_scheme_and_first_page_have_the_strips_and_the_law_of_the_contact() -> None:
+    chain = group("pantograph 1.chain", masses_kg=[6.0, 5.5], stiffness_N_m=[0.0, 7000.0], damping_N_s_m=[60.0, 0.0])
+    strips = {"strip.mass_kg": [3.0, 2.5], "strip.stiffness_N_m": [1e4, 9e3], "strip.damping_N_s_m": [20.0, 0.0]}
+    case = case_with(chain, group("pantograph 1.head", **strips), group("pantograph 1.contact", law="constraint"))
+    [figure] = scheme_figures(case, ())
+    for text in ("3 kg", "2.5 kg", "10000 N/m", "9000 N/m", "20 N s/m"):
+        assert figure.svg.count(f">{text}<") == 1, text
+    assert figure.svg.count(">constraint<") == 2
+    assert name_pantographs(case) == "1 × masses 6, 5.5 kg and strips 3, 2.5 kg"
+    assert len(scheme_figures(case, (case_with(chain, group("pantograph 1.contact", law="constraint")),))) == 1
+
+
 def test_uplift_force_acts_on_the_stated_mass() -> None:
     """The arrow stands at the height of the label, and moves with the mass: one level is 0.62 in, 44.64 points."""
     heights = []
     for lifted in (0, 1):
-        chain = DrawnChain((6.0, 5.5), (100.0, 7000.0), (60.0, 0.0), ("frame", "head"), lifted, 50000.0)
+        chain = DrawnChain((6.0, 5.5), (100.0, 7000.0), (60.0, 0.0), ("frame", "head"), lifted, "50000 N/m")
         [text] = [text for text in draw_chain.__wrapped__(chain).axes[0].texts if text.get_text() == "uplift force"]
         heights.append(72 * float(text.get_position()[1]))
     assert abs(heights[1] - heights[0] - 44.64) < 1e-3
