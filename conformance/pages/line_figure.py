@@ -13,6 +13,7 @@ from pantocheck.conformance.core.figure_data import DrawnSymbol, DrawnView, Line
 from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PALE, marker_style, render_svg
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.condition_sections import SPRINGLESS
 from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
 from pantocheck.conformance.pages.words import format_plain
 from pantocheck.conformance.results.case_facts_format import StoredValue, StoredValues
@@ -280,10 +281,6 @@ def _find_equal(case: CaseResult, earlier: tuple[CaseResult, ...]) -> str | None
 # Schemes of the pantographs of a case that are chains; equal chains are drawn once in a document.
 DRAWN_KEYS = ("masses_kg", "stiffness_N_m", "damping_N_s_m")
 """Keys of the values of a chain, base to head."""
-
-
-SPRINGLESS = ("hertz", "constraint")
-"""Contact laws without a stiffness."""
 
 
 def scheme_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc.Figure, ...]:

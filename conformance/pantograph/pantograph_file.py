@@ -118,13 +118,18 @@ class ChainTable(SourcedTable):
         yield from _find_wrong_lengths(self, lists, len(self.masses_kg), "mass", "masses")
         yield from self.find_wrong_mass("uplift_force_on", self.uplift_force_on)
 
-    def find_wrong_mass(self, key: str, mass: int | str) -> Problems:
-        """Problem of a mass, by number from the base or by name, that the chain does not have; `key` states it."""
+    def find_wrong_mass(self, key: str, mass: int | str, others: tuple[str, ...] = ()) -> Problems:
+        """Problem of a mass, by number from the base or by name, that the chain does not have.
+
+        Args:
+            key: Key that states it.
+            mass: Number or name.
+            others: Names of other parts that the key can state.
+        """
         names = self.names or ()
         if isinstance(mass, str) and mass not in names:
-            yield validation_problem(
-                key, f"there is no mass {mass!r}", f"Known names are {', '.join(names) or 'not given'}."
-            )
+            known = ", ".join((*names, *others)) or "not given"
+            yield validation_problem(key, f"there is no mass {mass!r}", f"Known names are {known}.")
         if isinstance(mass, int) and not 1 <= mass <= len(self.masses_kg):
             yield validation_problem(key, f"there is no mass {mass}", f"Give a number from 1 to {len(self.masses_kg)}.")
 
@@ -315,12 +320,17 @@ class PantographFile(InputTable):
             return
         for problem in self.head.find_misfits(self.chain is not None, self.unknowns):
             yield _place_problem("head", problem)
+        if self.chain is None:
+            return
+        known = ("base", *(f"strip {n}" for n, _ in enumerate(self.head.strip, 1)))
         for key in ("friction", "stop"):
             for i, table in enumerate(getattr(self.head, key)):
-                for part in table.between or ():
-                    known = ("base", *(f"strip {n}" for n, _ in enumerate(self.head.strip, 1)))
-                    if self.chain is not None and part not in known:
-                        yield from self.chain.find_wrong_mass(f"head.{key}[{i}].between", part)
+                place, parts = f"head.{key}[{i}].between", table.between or ()
+                masses = [part for part in parts if part not in known]
+                wrong = [problem for mass in masses for problem in self.chain.find_wrong_mass(place, mass, known)]
+                yield from wrong
+                if not wrong and len({part if part in known else self.chain.mass_index(part) for part in parts}) == 1:
+                    yield validation_problem(place, "names one part twice", "Give two parts.")
 
     def _find_wrong_point(self, key: str, point: int | str | tuple[float, ...]) -> Problems:
         """Problem of a point of application that does not have the form of the model."""

@@ -84,8 +84,9 @@ def pantograph_fit_command(
             tables, comparison = build_transfer_pantograph(records, transfer, title, contact_stiffness)
             write_atomically(out, tomli_w.dumps(tables).encode())
             files = [out, *write_comparison_files(comparison, out.with_name(f"{out.stem}-fit"))]
+        poles = transfer.pole.size + int(np.count_nonzero(transfer.pole.imag))
         return CommandOutput(
-            Text(f"Transfer function of {count_noun(transfer.pole.size, 'pole')} fitted"),
+            Text(f"Transfer function of {count_noun(poles, 'pole')} fitted"),
             comparison,
             [Text(_describe_transfer(transfer))],
             files=files,

@@ -7,6 +7,7 @@ import matplotlib
 import pytest
 
 from pantocheck.conformance.core.figure_data import Traces, UpliftTrace
+from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.case_figures import draw_force, draw_uplift
 from pantocheck.conformance.results.results_format import CaseResult
 
@@ -31,6 +32,22 @@ def test_force_figure_has_ticks_at_the_supports(passing: dict[str, Any]) -> None
     peak = max(zip(trace["amplitude_N"], trace["frequency_Hz"], strict=True))
     assert peak[1] == pytest.approx(250 / 3.6 / 60, rel=0.01)
     assert math.isclose(peak[0], 24 * 0.98, rel_tol=0.02)
+
+
+@pytest.mark.parametrize("reference", [False, True])
+def test_legend_of_a_head_with_two_strips_lies_inside_the_figure(passing: dict[str, Any], reference: bool) -> None:
+    """Eight curves and levels need two rows above the axes."""
+    trace = Traces.model_validate(passing["cases"][0]["traces"]["1"])
+    half = [force / 2 for force in trace.force_N]
+    trace = trace.model_copy(update={"strip_forces_N": [half, half]})
+    with matplotlib.rc_context(fname=TEMPLATES / "figure.mplstyle"):
+        figure = draw_force.__wrapped__(trace, trace.force_N if reference else [])
+        figure.draw_without_rendering()
+    legend = figure.axes[0].get_legend()
+    assert {"front strip", "rear strip"} < {text.get_text() for text in legend.get_texts()}
+    size, box = figure.bbox, legend.get_window_extent()
+    assert box.y1 <= size.y1
+    assert box.x1 <= size.x1
 
 
 @pytest.mark.usefixtures("fresh_figures")

@@ -64,7 +64,7 @@ def test_command_writes_a_pantograph_file_with_its_frequency(tmp_path: Path) -> 
     out = tmp_path / "head.toml"
     result = pantocheck("pantograph", "fit", str(table), "--pole-pairs", "3", "--out", str(out))
     assert result.exit_code == 0, result.output
-    assert "Transfer function of 3 poles fitted" in result.output
+    assert "Transfer function of 6 poles fitted" in result.output
     file = read_model(out, PantographFile, "pantograph")
     np.testing.assert_allclose(head_receptance(file, OMEGA) * stiffness, 1.0, atol=0.06)
     assert file.validity is not None

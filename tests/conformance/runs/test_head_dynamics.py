@@ -18,11 +18,12 @@ from pantocheck.conformance.records.record import FORCE_CHANNELS, Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import run_passage
 from pantocheck.conformance.runs.check import Finding
-from pantocheck.conformance.runs.force_dynamics import DYNAMICS
+from pantocheck.conformance.runs.force_dynamics import DYNAMICS, find_unknown_motion
 from pantocheck.conformance.runs.implied_force import IMPLIED_FORCE
 from pantocheck.model import build_chain
 from pantocheck.model.description.driven_head import drive_head
 from pantocheck.model.description.head_structure import add_friction, add_stop
+from verification.formulations.finite_differences import find_case
 
 STRIPS = [
     {"position_m": 0.29, "mass_kg": 3.0, "stiffness_N_m": 1e4, "damping_N_s_m": 20.0},
@@ -94,6 +95,9 @@ def test_motion_that_a_record_does_not_determine_is_not_checked() -> None:
     assert "no forces of the strips" in find(case, without)[0].text
     base = {"strip": STRIPS, "stop": [{"between": ["base", 1], "extension_m": 0.3, "stiffness_N_m": 1e5}]}
     assert "above its base" in find(with_head(case, base), record)[0].text
+    curved = with_head(find_case("en50318-2018/ac-simple/320+curved"), HEADS["roll"])
+    reason = find_unknown_motion(curved, RecordSignals(record, case.file.filter), 1)
+    assert reason == "the record does not state the place of the wire on pantograph 1"
 
 
 def test_embedded_signals_do_not_repeat_checks_that_need_the_run_in() -> None:
