@@ -27,6 +27,7 @@ class DocumentationPage(Enum):
     """Page of the documentation; its value is the title up to a colon, its text is ready for a sentence."""
 
     COMPARE_DROP = "A recorded mass drop beside its simulation"
+    FMU = "Pantographs and lines as FMU"
     IDENTIFICATION = "Identification of damping from mass drops"
     IDENTIFICATION_COVERAGE = "Coverage of the identification"
     LINE_TABLES = "Line tables"

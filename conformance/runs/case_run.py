@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from itertools import count
@@ -208,12 +208,17 @@ def list_start_forces(case: Case) -> tuple[float, ...]:
 
 
 def _watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, float], ...]:
-    """Contact wire and position of every support of the recorded section, its ends included.
+    """Watched supports of the recorded section, its ends included."""
+    first, last = case.recorded_section
+    return watch_supports([x for x in case.line.geometry.supports if first - 1e-6 <= x <= last + 1e-6], line)
+
+
+def watch_supports(supports: Iterable[float], line: DiscretisedLine) -> tuple[tuple[str, float], ...]:
+    """Contact wire and position of supports [m].
 
     It is the first one of parallel wires; in an overlap it is the lowest wire, which the pantograph lifts.
     """
-    (first, last), wires = case.recorded_section, line.catenary.contact_wires
-    supports = [x for x in case.line.geometry.supports if first - 1e-6 <= x <= last + 1e-6]
+    wires = line.catenary.contact_wires
     return tuple((wires[touched_wires(line, x)[0]].name, x) for x in supports)
 
 

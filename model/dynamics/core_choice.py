@@ -7,7 +7,7 @@ environment variable `PANTOCHECK_CORE` demands one of them, `c` or `numba`.
 import ctypes
 import os
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.metadata import version
@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pantocheck.model.description.failures import SimulationError
 from pantocheck.model.dynamics.core_source import SOURCES, source_digest
@@ -108,24 +109,30 @@ def call_core(library: ctypes.CDLL, name: str, arguments: Sequence[Any]) -> floa
     return result
 
 
-def pack_argument(value: Any, kind: Any = None) -> bytes:
+def find_address(array: NDArray[Any]) -> int:
+    """Address of an array in the memory of this process."""
+    return int(array.ctypes.data)
+
+
+def pack_argument(value: Any, kind: Any = None, locate: Callable[[NDArray[Any]], int] = find_address) -> bytes:
     """Pack an argument as the structures of the C file: an array as its address and four sizes, a number as a word.
 
     Args:
         value: Named tuple, array or number; the arrays must outlive the packed form.
         kind: Declared type of a number.
+        locate: Function that gives the address of an array.
 
     Raises:
         TypeError: An array is not contiguous, or has another type of values than 64-bit numbers or truth values.
     """
     if isinstance(value, tuple):
         kinds = type(value).__annotations__
-        return b"".join(pack_argument(part, kinds[name]) for name, part in zip(kinds, value, strict=True))
+        return b"".join(pack_argument(part, kinds[name], locate) for name, part in zip(kinds, value, strict=True))
     if isinstance(value, np.ndarray):
         if not value.flags.c_contiguous or value.dtype not in (np.float64, np.int64, np.bool_):
             raise TypeError(
                 f"an array of the core is contiguous, of 64-bit numbers; found {value.dtype} {value.strides}"
             )
-        return struct.pack("=5q", value.ctypes.data, *value.shape, *[1] * (4 - value.ndim))
+        return struct.pack("=5q", locate(value), *value.shape, *[1] * (4 - value.ndim))
     real = kind is float or isinstance(value, float)
     return struct.pack("=d", value) if real else struct.pack("=q", value)

@@ -5,6 +5,8 @@ from pathlib import Path
 
 SOURCES = tuple(Path(__file__).with_name(name) for name in ("time_step.c", "time_step_vectors.h"))
 """Files of the core; the first one is compiled, and includes the others."""
+LINE_SOURCES = (Path(__file__).with_name("line_fmu.c"), *SOURCES)
+"""Files of a line as FMU; the first one is compiled, and includes the others."""
 COMPILER_OPTIONS = ("-std=c11", "-O3", "-fvisibility=hidden", "-Wno-psabi")
 """Options of the compiler. None of them may change a result, as `-ffast-math` would."""
 

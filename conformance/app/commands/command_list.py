@@ -38,7 +38,7 @@ PANELS: dict[str, dict[str, str]] = {
     },
     "line": {
         "line import": "Write a line file from tables of supports and droppers.",
-        "line export": "Write supports and droppers of a line as tables.",
+        "line export": "Write a line as tables, or as FMU.",
         "line draw": "Draw a whole line to scale, in elevation and in plan.",
         "line statics": "Compare measured static values with those of a line.",
         "line update": "Write the line as built, from measurements.",

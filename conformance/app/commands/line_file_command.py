@@ -1,4 +1,4 @@
-"""`pantocheck line import`, `line export` and `line draw`: a line as tables, and its drawing."""
+"""`pantocheck line import`, `line export` and `line draw`: a line as tables or FMU, and its drawing."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -10,7 +10,7 @@ import typer
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
-from pantocheck.conformance.app.commands.options import read_line
+from pantocheck.conformance.app.commands.options import choose_train_case, read_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.catalogue import open_catalogue
@@ -29,7 +29,9 @@ from pantocheck.conformance.line.line_drawing import LineDrawing, draw_line_pdf,
 from pantocheck.conformance.line.line_export import DecimalMark, export_droppers, export_supports
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.line_import import import_line
+from pantocheck.conformance.runs.line_fmu import FmiVersion, build_line_fmu
 from pantocheck.model import Catenary, discretise
+from pantocheck.model.dynamics.line_image import GivenInput
 
 
 def line_import_command(
@@ -75,28 +77,47 @@ def line_import_command(
     return CommandOutput(escape_text(f"{facts['spans']} spans, {facts['length_m']:g} m"), facts, files=(out,))
 
 
-# `pantocheck line export`: tables of the supports and droppers of a line.
+# `pantocheck line export`: tables of the supports and droppers of a line, or the line as FMU.
 def line_export_command(
     line: Annotated[
         str, typer.Argument(help="Id of a case, or path of a case or line file.", autocompletion=complete_case)
     ],
-    out: Annotated[Path, typer.Option(help="Folder for supports.csv and droppers.csv.")],
+    out: Annotated[Path | None, typer.Option(help="Folder for supports.csv and droppers.csv.")] = None,
     decimal: Annotated[
         DecimalMark, typer.Option(help="Decimal mark; beside commas, columns are separated by semicolons.")
     ] = "point",
+    fmu: Annotated[
+        Path | None, typer.Option(help=f"FMU of the line of a case with a train: {DocumentationPage.FMU}.")
+    ] = None,
+    fmi: Annotated[FmiVersion, typer.Option(help="Version of FMI.")] = "3.0",
+    given: Annotated[
+        GivenInput, typer.Option("--input", help="Input of the FMU at each head: its height or its contact force.")
+    ] = "height",
 ) -> CommandOutput:
-    """Write supports and droppers of a line as tables.
+    """Write a line as tables, or as FMU.
 
-    `pantocheck line import` turns the tables, with the same line file as base, into the same line.
+    `pantocheck line import` turns the tables, with the same line file as base, into the same line. An FMU holds the
+    line of a case with its data and sources, compiled by the C compiler of this machine.
 
-    Example: pantocheck line export en50318-2018/ac-simple/static --out tables --decimal comma
+    Examples:
+
+    pantocheck line export en50318-2018/ac-simple/static --out tables --decimal comma
+
+    pantocheck line export en50318-2018/ac-simple/275 --fmu line.fmu
     """
-    line_file = read_line(line)
-    check_writable(out)
-    files = [out / "supports.csv", out / "droppers.csv"]
-    for path, export in zip(files, (export_supports, export_droppers), strict=True):
-        # Spreadsheets recognise UTF-8 by the byte order mark.
-        write_atomically(path, export(line_file, decimal).encode("utf-8-sig"))
+    if out is None and fmu is None:
+        raise InputError("line export", "has no file to write", "Give --out, --fmu or both.")
+    line_file, files = read_line(line), list[Path]()
+    if out is not None:
+        check_writable(out)
+        for path, export in ((out / "supports.csv", export_supports), (out / "droppers.csv", export_droppers)):
+            # Spreadsheets recognise UTF-8 by the byte order mark.
+            write_atomically(path, export(line_file, decimal).encode("utf-8-sig"))
+            files.append(path)
+    if fmu is not None:
+        check_writable(fmu.parent)
+        write_atomically(fmu, build_line_fmu(choose_train_case(line, ()), fmi, given))
+        files.append(fmu)
     spans = line_file.geometry.spans
     return CommandOutput(escape_text(f"{line_file.title}: {spans} spans"), {"spans": spans}, files=files)
 
