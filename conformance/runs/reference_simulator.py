@@ -120,7 +120,8 @@ def _plan_steps(case: Case) -> StepSequence:
 def _begin_run(case: Case, steps: StepSequence) -> ShareCallback:
     """Begin the run on the mesh of the case; the first run of all shows its compilation until its time steps begin."""
     progress = steps.begin(OWN_MESH)
-    if not case.is_static and choose_core().library is None and not has_kept_kernels():
+    core = choose_core()
+    if not case.is_static and core.library is None and core.is_compiled and not has_kept_kernels():
         _LOGGER.warning("%s", COMPILATION)
         steps.begin(COMPILATION)
     return progress

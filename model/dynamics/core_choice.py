@@ -1,7 +1,7 @@
 """Core of the time steps: the C file of this folder, compiled at the installation, or the kernels compiled by numba.
 
 Both compute the same, to rounding. The core in C runs if the installation has its library, else that of numba. The
-environment variable `PANTOCHECK_CORE` demands one of them, `c` or `numba`.
+environment variable `PANTOCHECK_CORE` demands one of them, `c` or `numba`, or the slow `reference_kernel`.
 """
 
 import ctypes
@@ -22,6 +22,8 @@ from pantocheck.model.description.failures import SimulationError
 from pantocheck.model.dynamics.core_source import SOURCES, source_digest
 
 CORE_VARIABLE = "PANTOCHECK_CORE"
+KERNELS = ("c", "numba", "reference")
+"""Values of this variable."""
 
 
 class UnusableCore(SimulationError):
@@ -34,7 +36,12 @@ class Core(NamedTuple):
     name: str
     """Language and compiler, as results state them."""
     library: ctypes.CDLL | None
-    """Library of the core in C; None: numba."""
+    """Library of the core in C; None: another core."""
+    is_compiled: bool = True
+    """Whether it is compiled; False: the reference kernel."""
+
+
+REFERENCE_CORE = Core("reference (full matrices)", None, is_compiled=False)
 
 
 def choose_core() -> Core:
@@ -45,8 +52,10 @@ def choose_core() -> Core:
         ModuleNotFoundError: There is no core, because numba is not installed either.
     """
     demanded = os.environ.get(CORE_VARIABLE, "")
-    if demanded not in {"", "c", "numba"}:
-        raise UnusableCore(f"{CORE_VARIABLE} is '{demanded}'; it must be 'c' or 'numba'")
+    if demanded not in {"", *KERNELS}:
+        raise UnusableCore(f"{CORE_VARIABLE} is '{demanded}'; it must be 'c', 'numba' or 'reference'")
+    if demanded == "reference":
+        return REFERENCE_CORE
     core = find_core_in_c()
     if isinstance(core, Core) and demanded != "numba":
         return core

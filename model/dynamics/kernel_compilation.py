@@ -13,7 +13,7 @@ from importlib import import_module
 from types import FunctionType
 from typing import Any, TypeVar
 
-from pantocheck.model.dynamics.core_choice import call_core, choose_core
+from pantocheck.model.dynamics.core_choice import UnusableCore, call_core, choose_core
 from pantocheck.model.kernel_cache import drop_outdated_kernels, provide_kernel_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -55,10 +55,11 @@ class EntryKernel(LateObject):
 
     def __call__(self, *arguments: Any) -> Any:
         """Run the function in the chosen core."""
-        library = choose_core().library
-        if library is None:
+        core, function = choose_core(), self.__wrapped__
+        if not core.is_compiled:
+            raise UnusableCore(f"the reference kernel is demanded, but {function.__name__} has fast kernels only")
+        if (library := core.library) is None:
             return super().__call__(*arguments)
-        function = self.__wrapped__
         result = call_core(library, function.__name__, arguments)
         return int(result) if function.__annotations__["return"] is int else result
 

@@ -7,10 +7,13 @@ import numpy as np
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.catenary import GRAVITY, Catenary
 from pantocheck.model.discretisation.discretised_line import discretise
+from pantocheck.model.dynamics.core_choice import choose_core
 from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
 from pantocheck.model.dynamics.kernel_arrays import Load, build_kernel_arrays
 from pantocheck.model.dynamics.motion import motion_at_rest
+from pantocheck.model.dynamics.passage import Passage
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
+from pantocheck.model.dynamics.reference_kernel import simulate_full_steps
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.statics.assembly import point_load
 from pantocheck.model.statics.static_solver import static_solver
@@ -37,15 +40,21 @@ def simulate_mass_drop(
     places = (test.position, *(position for _, position in test.sensors))
     line = discretise(catenary, element_length, places)
     load = Load(line.mesh.row_of[test.wire, "z"], line.mesh.station(test.position))
-    kernel = build_kernel_arrays(line, test.time_step, load=load)
     weight = -test.mass * GRAVITY
     hanging = static_solver(line).deflection(weight * point_load(line, load.row, test.position))
-    motion = motion_at_rest(kernel.layout, hanging, kernel.distributed.number)
     train = build_empty_train(len(catenary.contact_wires))
     before, after = (round(duration / test.time_step) for duration in (test.hanging, test.duration))
     time: Array = test.time_step * np.arange(1 - before, after + 1).astype(np.float64)
     recording = allocate_recording(line, test.sensors, time.size, 0, test.axes)
-    simulate_steps(kernel, motion, train, weight * _hanging_share(time, test.release_duration), recording, progress)
+    force = weight * _hanging_share(time, test.release_duration)
+    if choose_core().is_compiled:
+        kernel = build_kernel_arrays(line, test.time_step, load=load)
+        motion = motion_at_rest(kernel.layout, hanging, kernel.distributed.number)
+        simulate_steps(kernel, motion, train, force, recording, progress)
+    else:
+        free = Passage((), (), 0.0, test.hanging + test.duration, test.time_step)
+        point = point_load(line, load.row, test.position)
+        simulate_full_steps(line, free, (hanging, train), recording, (point, force), progress)
     slack = time[(recording.slack > 0) & (time > 0)]
     return FreeDecay(
         time=time,

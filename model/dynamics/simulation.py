@@ -9,20 +9,22 @@ from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.failures import ImpossiblePassage
 from pantocheck.model.description.pantograph import Pantograph
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
-from pantocheck.model.dynamics.active_window import build_window_arrays, find_unknown
-from pantocheck.model.dynamics.contact_arrays import ContactArrays, height_of_irregularity
+from pantocheck.model.dynamics.active_window import build_whole_window, build_window_arrays, find_unknown
+from pantocheck.model.dynamics.contact_arrays import build_irregularity_arrays, height_of_irregularity
+from pantocheck.model.dynamics.core_choice import choose_core
 from pantocheck.model.dynamics.foreign_pantograph import build_interface, couple_steps, start_interfaces
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest
 from pantocheck.model.dynamics.passage import ForeignPantograph, History, Passage
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
+from pantocheck.model.dynamics.reference_kernel import simulate_full_steps
 from pantocheck.model.dynamics.train import Train, build_train
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.statics.assembly import point_load
 from pantocheck.model.statics.contact_wires import locate_contact_wires, touched_wires
-from pantocheck.model.statics.static_solver import static_solver
+from pantocheck.model.statics.static_solver import Deflection, static_solver
 
 
 def simulate_passage(
@@ -47,25 +49,36 @@ def simulate_passage(
         DidNotConverge: The forces of a time step did not converge.
     """
     _check_passage(line, passage)
-    kernel = build_kernel_arrays(line, passage.time_step, build_window_arrays(line, passage))
     pantographs, programs = passage.pantographs, programs or [None] * len(passage.pantographs)
     pairs = zip(pantographs, programs, strict=True)
     moved = tuple(pantograph if program is None else build_interface(pantograph) for pantograph, program in pairs)
     passage = replace(passage, pantographs=moved)
-    motion, train = start_motion(line, kernel, passage)
+    deflection, train = start_at_rest(line, passage)
     interfaces = start_interfaces(programs, pantographs, train, passage.time_step)
     steps = round(passage.duration / passage.time_step)
     recording = allocate_recording(line, passage.watched, steps, train.owner.size)
-    if interfaces:
-        couple_steps(kernel, motion, train, interfaces, recording, progress)
+    window = build_window_arrays(line, passage)
+    if not choose_core().is_compiled:
+        if interfaces:
+            raise ImpossiblePassage(
+                "the reference kernel does not move pantographs that are programs: demand another kernel"
+            )
+        simulate_full_steps(line, passage, (deflection, train), recording, progress=progress)
+        window = window if not (line.stretches.first.size or line.catenary.modal_damping) else build_whole_window(line)
     else:
-        simulate_steps(kernel, motion, train, np.zeros(steps), recording, progress)
+        kernel = build_kernel_arrays(line, passage.time_step, window)
+        window = kernel.window
+        motion = motion_at_rest(kernel.layout, deflection, kernel.distributed.number)
+        if interfaces:
+            couple_steps(kernel, motion, train, interfaces, recording, progress)
+        else:
+            simulate_steps(kernel, motion, train, np.zeros(steps), recording, progress)
     time: Array = passage.time_step * np.arange(1, steps + 1).astype(np.float64)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     force, height = recording.contact.T.copy(), recording.height.T.copy()
     first = train.first_strip[:-1]
     watched = recording.motion.transpose(1, 0, 2).copy()
-    watched[find_unknown(kernel.window, passage, time)] = np.nan
+    watched[find_unknown(window, passage, time)] = np.nan
     return History(
         time=time,
         position=position,
@@ -100,6 +113,12 @@ def _strip_places(passage: Passage) -> list[tuple[Pantograph, float]]:
 
 
 def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) -> tuple[Motion, Train]:
+    """Line and pantographs at rest, as in `start_at_rest`, in the arrays of a kernel."""
+    deflection, train = start_at_rest(line, passage)
+    return motion_at_rest(kernel.layout, deflection, kernel.distributed.number), train
+
+
+def start_at_rest(line: DiscretisedLine, passage: Passage) -> tuple[Deflection, Train]:
     """Compute line and pantographs at rest, each pressing with its static force; before a ramp, with none."""
     wires, pressed = locate_contact_wires(line), float(passage.ramp == 0)
     places = _strip_places(passage)
@@ -112,18 +131,17 @@ def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) 
         for row in wires.row[under]:
             load += share / under.size * pressed * pantograph.static_force * point_load(line, row, x)
     deflection = static_solver(line).deflection(load)
-    profile = kernel.contact.rest + deflection.displacement
+    profile = line.state.deflection + deflection.displacement
     height, flexibility = np.zeros(touched.shape), np.zeros(touched.shape)
     for c, wire in np.argwhere(touched):
-        height[c, wire], flexibility[c, wire] = _contact_point(kernel.contact, profile, wire, places[c][1])
-    train = build_train(passage, touched, height, flexibility)
-    return motion_at_rest(kernel.layout, deflection, kernel.distributed.number), train
+        height[c, wire], flexibility[c, wire] = _contact_point(line, profile, wire, places[c][1])
+    return deflection, build_train(passage, touched, height, flexibility)
 
 
-def _contact_point(contact: ContactArrays, profile: Array, wire: int, position: float) -> tuple[float, float]:
+def _contact_point(line: DiscretisedLine, profile: Array, wire: int, position: float) -> tuple[float, float]:
     """Height of a contact wire with its irregularity, and its residual flexibility, at a position [m, m/N]."""
-    element, length, s = find_element(contact.position, position)
-    row = contact.wires.row[wire]
+    element, length, s = find_element(line.mesh.position, position)
+    row = locate_contact_wires(line).row[wire]
     height = float(beam.shape(s, length) @ profile[row, element : element + 2].ravel())
-    height += height_of_irregularity(contact.irregularity, wire, position)
-    return height, residual_flexibility(contact.flexibility[row, element], s)
+    height += height_of_irregularity(build_irregularity_arrays(line.catenary.contact_wires), wire, position)
+    return height, residual_flexibility(line.beams.flexibility[row, element], s)

@@ -8,8 +8,9 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from helpers.lines import Array, without_connectors
+from helpers.lines import Array
 from pantocheck.model import DiscretisedLine, Passage
+from pantocheck.model.dynamics.reference_kernel import without_connectors
 from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,

@@ -3,8 +3,9 @@
 import numpy as np
 from scipy.sparse.linalg import splu
 
-from helpers.lines import Array, without_connectors
+from helpers.lines import Array
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.reference_kernel import without_connectors
 from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, correct_mass
 
 

@@ -8,7 +8,6 @@ from scipy.linalg import eigvals
 
 from pantocheck.model import (
     Catenary,
-    DiscretisedLine,
     Dropper,
     Kind,
     MessengerSupport,
@@ -108,12 +107,6 @@ def complex_roots(mass: Array, damping: Array, stiffness: Array, count: int) -> 
     roots = eigvals(np.block([[np.zeros((n, n)), np.eye(n)], lower]))
     oscillating = roots[roots.imag > 0]
     return np.asarray(oscillating[np.argsort(np.abs(oscillating))][:count])
-
-
-def without_connectors(line: DiscretisedLine) -> DiscretisedLine:
-    """Remove the stiffness and damping of all connectors from a line."""
-    zeros = np.zeros_like(line.connectors.stiffness)
-    return replace(line, connectors=line.connectors._replace(stiffness=zeros, damping=zeros))
 
 
 DAMPED = {

@@ -9,6 +9,7 @@ from pantocheck.conformance.app.commands.cases_option import CasesOption, comple
 from pantocheck.conformance.app.commands.command_output import EXIT_CODES, CommandOutput
 from pantocheck.conformance.app.commands.console import error_console, escape_text
 from pantocheck.conformance.app.commands.interruption import Interruption, receive_signals
+from pantocheck.conformance.app.commands.kernel_option import KernelOption, demand_kernel
 from pantocheck.conformance.app.commands.options import (
     AcceptUnconfirmedOption,
     AdministrationOption,
@@ -110,6 +111,7 @@ def run_command(
     damping_study: DampingStudyOption = False,
     with_reference: WithReferenceOption = False,
     timeout: TimeoutOption = None,
+    kernel: KernelOption = None,
 ) -> CommandOutput:
     """Run and grade cases on a system; write a certificate.
 
@@ -133,6 +135,7 @@ def run_command(
 
     pantocheck run --plan conformance.toml --baseline results.json --drift 2
     """
+    demand_kernel(kernel)
     settings = {"trust": trust, "decision": decision, "verdicts": verdicts, "limits": limits, "baseline": baseline}
     run = {"system": system, "jobs": jobs, "damping_study": damping_study or None, "timeout_s": timeout}
     options = build_options(

@@ -8,6 +8,7 @@ import typer
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
+from pantocheck.conformance.app.commands.kernel_option import KernelOption, demand_kernel
 from pantocheck.conformance.app.commands.options import SetOption, choose_train_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.app.commands.quantities_table import build_quantities_table, list_names, select_main
@@ -32,6 +33,7 @@ def simulate_command(
     ] = "builtin",
     changed: SetOption = None,
     folders: CasesOption = None,
+    kernel: KernelOption = None,
 ) -> CommandOutput:
     """Simulate a case and write its record.
 
@@ -40,7 +42,10 @@ def simulate_command(
     pantocheck simulate en50318-2002/250 --out 250.csv
 
     pantocheck simulate my-case.toml --set speed_km_h=300 --out 300.csv
+
+    pantocheck simulate en50318-2002/250 --kernel reference --out reference.csv
     """
+    demand_kernel(kernel)
     check_record_path(out)
     catalogue, changes = open_catalogue(folders or ()), parse_changes(changed or ())
     chosen = choose_train_case(case, changes, catalogue)

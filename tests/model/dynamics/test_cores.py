@@ -252,7 +252,7 @@ def test_demanded_core_runs_or_the_run_is_refused(
     with pytest.raises(InputError, match="demands the core in C, but it was not compiled"):
         require_core("reference simulator")
     monkeypatch.setenv(CORE_VARIABLE, "fortran")
-    with pytest.raises(UnusableCore, match="must be 'c' or 'numba'"):
+    with pytest.raises(UnusableCore, match="must be 'c', 'numba' or 'reference'"):
         choose_core()
     monkeypatch.delenv(CORE_VARIABLE)
     monkeypatch.setattr(core_choice, "find_spec", lambda name: None)

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_array
 
-from helpers.lines import Array, fix_along_track, simple_line, without_connectors
+from helpers.lines import Array, fix_along_track, simple_line
 from pantocheck.model.description.catenary import Kind, Rayleigh
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import Motion, build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
+from pantocheck.model.dynamics.reference_kernel import without_connectors
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.statics.assembly import (
     assemble_matrices,

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import nnls
 
-from helpers.lines import Array, simple_line, without_connectors
+from helpers.lines import Array, simple_line
 from pantocheck.model.discretisation.discretised_line import discretise
+from pantocheck.model.dynamics.reference_kernel import without_connectors
 from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, connector_directions, point_load
 from pantocheck.model.statics.static_solver import StaticSolver
 from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses, invert_blocks
