@@ -24,6 +24,7 @@ from pantocheck.conformance.network.section_grading import (
     list_grid,
 )
 from pantocheck.conformance.network.track_places import find_known_place, list_tension_sections
+from pantocheck.conformance.network.unusual_values import GroupedPassages, find_unusual
 from pantocheck.conformance.results.network_format import (
     Direction,
     ForcePlace,
@@ -35,6 +36,7 @@ from pantocheck.conformance.results.network_format import (
     SectionGroup,
     SectionPassage,
     TrackSection,
+    UnusualValue,
 )
 
 SPEED_CLASS_KM_H = 10.0
@@ -147,7 +149,8 @@ def assess_network(
             report(run, passages)
     if not count:
         raise InputError("collection", "has no run", "Import files: pantocheck runs import FILE ... --out DIR.")
-    groups = _group(found.passages, sections, task.by)
+    rows = _group(found.passages, sections, task.by)
+    groups = [group for group, _ in rows]
     verdict, reason = judge_network(groups, refused)
     lengths = {_key(section): section.to_km - section.from_km for section in sections}
     measured = {_key(group.section) for group in groups if group.passages}
@@ -164,6 +167,7 @@ def assess_network(
         total_km=round(sum(lengths.values()), 6),
         groups=tuple(groups),
         places=tuple(_join_places(found, task.known_places)),
+        unusual=tuple(_compare_sections(rows)),
         known_places=task.known_places,
         refused=tuple(RefusedImport(file=item.file, reason=item.reason) for item in refused),
         suspicious=suspicious,
@@ -182,18 +186,28 @@ def judge_network(groups: Sequence[SectionGroup], refused: Sequence[object]) -> 
     return verdict, "; ".join([*parts, *([f"{len(refused)} files refused"] if refused else [])])
 
 
+def _compare_sections(rows: GroupedPassages) -> Iterator[UnusualValue]:
+    """Unusual values among the sections of the same track, class of speed, direction and pantograph."""
+    alike = defaultdict[tuple[object, ...], GroupedPassages](list)
+    for group, passages in rows:
+        key = (group.section.line, group.section.track, group.speed_km_h, group.direction, group.pantograph)
+        alike[key].append((group, passages))
+    for part in alike.values():
+        yield from find_unusual(part)
+
+
 def _key(section: TrackSection) -> SectionKey:
     return section.line, section.track, section.from_km
 
 
 def _group(
     passages: Sequence[SectionPassage], sections: Sequence[TrackSection], by: Sequence[GroupKey]
-) -> list[SectionGroup]:
-    """Groups of every section in the order of the track; a section without a whole passage is one of them."""
+) -> GroupedPassages:
+    """Groups of every section with their passages, in the order of the track; one group if there is no passage."""
     found = defaultdict[SectionKey, list[SectionPassage]](list)
     for passage in passages:
         found[_key(passage.section)].append(passage)
-    groups = []
+    groups: GroupedPassages = []
     for section in sections:
         classes = defaultdict[GroupClass, list[SectionPassage]](list)
         here = found[_key(section)]
@@ -205,7 +219,7 @@ def _group(
             for other in same or [key]:
                 classes[other].append(passage)
         for key in sorted(classes, key=str) or [(None, None, None)]:
-            groups.append(_build_group(section, key, classes[key], len(here) - len(whole)))
+            groups.append((_build_group(section, key, classes[key], len(here) - len(whole)), classes[key]))
     return groups
 
 

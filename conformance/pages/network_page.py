@@ -15,6 +15,7 @@ from pantocheck.conformance.results.network_format import (
     SectionGroup,
     SectionPassage,
     TrackSection,
+    UnusualValue,
 )
 
 NETWORK_SCOPE = (
@@ -45,6 +46,8 @@ def build_network_page(results: NetworkResults) -> doc.Document:
         traced = [place for place in results.places if place.trace is not None]
         drawn = doc.Section("Force at the worst places", (doc.Figures(tuple(map(_draw_place, traced))),), folded=True)
         blocks.append(doc.Section("Worst places", (_tabulate_places(results.places), drawn)))
+    if results.unusual:
+        blocks.append(doc.Section("Unusual values", (_tabulate_unusual(results.unusual),)))
     blocks.append(doc.Section("Sections", (_tabulate_groups(results.groups),)))
     drifts = [doc.BulletList(tuple(_list_drifts(results.groups)))] if any(_list_drifts(results.groups)) else []
     if drifts:
@@ -147,6 +150,19 @@ def _tabulate_places(places: Sequence[ForcePlace]) -> doc.Table:
     }
     caption = "Deviation of the filtered force from the median of its section, in robust standard deviations"
     return doc.make_table(places, cells, caption)
+
+
+def _tabulate_unusual(values: Sequence[UnusualValue]) -> doc.Table:
+    cells = {
+        **{doc.Column(text): call for text, call in _name_section_cells().items()},
+        doc.Column("Quantity"): lambda x: quantity_label(x.quantity),
+        doc.Column("Value", number=True): lambda x: format_value(x.value),
+        doc.Column("Expected", number=True): lambda x: format_value(x.expected),
+        doc.Column("Deviation", number=True): lambda x: f"{x.deviation:.1f}",
+        doc.Column("Run"): lambda x: "all" if x.run is None else _link_run(x.run),
+    }
+    caption = "All runs: a section beside the others of its track. One run: a passage beside the others of its section"
+    return doc.make_table(values, cells, caption)  # type: ignore[arg-type]
 
 
 def _draw_track(line: str, track: str, groups: Sequence[SectionGroup]) -> doc.Figure:

@@ -126,6 +126,21 @@ class ForcePlace(ResultsPart):
     """Filtered force by kilometre around the place; null outside the worst places."""
 
 
+class UnusualValue(ResultsPart):
+    """Value of a section beside the others of its track, or of a passage beside the others of its section."""
+
+    section: TrackSection
+    speed_km_h: tuple[FiniteNumber, FiniteNumber] | None
+    run: str | None
+    """Run of an unusual passage; null: the median of all passages of the section is unusual."""
+    quantity: str
+    value: FiniteNumber
+    expected: FiniteNumber
+    """Median of the others."""
+    deviation: FiniteNumber
+    """Difference in robust standard deviations."""
+
+
 class RefusedImport(ResultsPart):
     """File that could not be imported."""
 
@@ -153,6 +168,7 @@ class NetworkResults(ResultsPart):
     groups: tuple[SectionGroup, ...]
     places: tuple[ForcePlace, ...]
     """From the largest deviation to the smallest."""
+    unusual: tuple[UnusualValue, ...]
     known_places: tuple[KnownPlace, ...]
     refused: tuple[RefusedImport, ...]
     suspicious: dict[str, tuple[str, ...]]

@@ -17,17 +17,20 @@ def write_run(
     speed_km_h: float = 250.0,
     mean: float = 100.0,
     dip_km: float | None = None,
+    wide_km: tuple[float, float] = (0.0, 0.0),
     seed: int = 0,
 ) -> Path:
     """Write a German logger file (kN, decimal comma) with its sidecar; the kilometres run from the first to the last.
 
-    The force has a sigma of 20 N by spans of 50 m and noise; a dip of 150 N and 2 m is a broken dropper.
+    The force has a sigma of 20 N by spans of 50 m and noise; a dip of 150 N and 2 m is a broken dropper;
+    between `wide_km` the sigma is 30 N.
     """
     random = np.random.default_rng((37, seed))
     begin, end = ends_km
     time = np.arange(0, 3600 * abs(end - begin) / speed_km_h, 1 / RATE)
     km = begin + np.sign(end - begin) * speed_km_h / 3600 * time
-    force = mean + 28 * np.sin(2 * np.pi * km / 0.05) + random.normal(0, 3, time.size)
+    swing = np.where((km >= wide_km[0]) & (km < wide_km[1]), 42.0, 28.0)
+    force = mean + swing * np.sin(2 * np.pi * km / 0.05) + random.normal(0, 3, time.size)
     if dip_km is not None:
         force -= 150 * np.exp(-((1000 * (km - dip_km)) ** 2) / 8)
     rows = np.column_stack([time, km, force / 1000])

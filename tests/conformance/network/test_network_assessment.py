@@ -152,6 +152,24 @@ def test_repeats_have_a_range_and_a_drift(tmp_path: Path, profile: Profile) -> N
     assert not group.values["std_force_N"].drifts
 
 
+def test_a_section_and_a_passage_that_differ_are_named(tmp_path: Path, profile: Profile) -> None:
+    """Of ten sections, the force of one swings by 42 N instead of 28 N in all runs; one run has 10 N too much."""
+    files = []
+    for day in (1, 2, 3):
+        mean = 110.0 if day == 3 else 100.0
+        path = write_run(
+            tmp_path, f"run{day}", ends_km=(10.0, 15.0), day=day, seed=day, mean=mean, wide_km=(12.0, 12.5)
+        )
+        files.append(path)
+    unusual = assess(files, tmp_path / "runs", profile).unusual
+    lines = {(x.section.from_km, x.quantity) for x in unusual if x.run is None}
+    assert lines == {(12.0, "std_force_N")}
+    runs = [x for x in unusual if x.run is not None]
+    assert {(x.quantity, round(x.value - x.expected)) for x in runs} == {("mean_force_N", 10)}
+    assert len(runs) == 10
+    assert not assess(files[:2], tmp_path / "two", profile).unusual[1:]  # two passages do not tell which is wrong
+
+
 def test_a_place_has_a_name_and_the_page_escapes_it(tmp_path: Path, profile: Profile) -> None:
     files = [
         write_run(tmp_path, f"run{day}", ends_km=ends, day=day, seed=day, dip_km=10.733)
