@@ -196,6 +196,8 @@ class CampaignFile(InputTable):
     """Folders with further cases, whose ids begin with own/, relative to the campaign."""
     set: Texts = ()
     """Inputs changed in all runs, e.g. "speed_km_h=300"."""
+    pantograph: Texts = ()
+    """Pantograph files or FMUs in place of those of the cases, as `pantograph` of a plan."""
     vary: Annotated[tuple[InputVariation, ...], Field(strict=False, max_length=100)] = ()
     """Variations, combined as a grid."""
     sampling: InputSampling | None = None

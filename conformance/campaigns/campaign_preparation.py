@@ -21,9 +21,10 @@ from pantocheck.conformance.campaigns.campaign_store import CampaignStore
 from pantocheck.conformance.campaigns.run_executors import RunExecutor
 from pantocheck.conformance.campaigns.uplift_prediction import choose_pilots, fit_uplift
 from pantocheck.conformance.cases.case import Case, CaseOrigin, drop_keys, json_digest
+from pantocheck.conformance.cases.case_parts import read_named_pantograph
 from pantocheck.conformance.cases.case_source import build_repeated_id_error
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
-from pantocheck.conformance.cases.input_changes import parse_changes
+from pantocheck.conformance.cases.input_changes import parse_changes, replace_pantographs
 from pantocheck.conformance.cases.library import find_entries, load_entry, overlay_limits, read_limits
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.input_error import InputError, suggest_names
@@ -37,7 +38,7 @@ from pantocheck.conformance.results.campaign_format import CampaignEnding
 from pantocheck.conformance.runs.core_requirement import require_core
 from pantocheck.conformance.runs.system_choice import choose_system
 
-OUTSIDE_IDENTITY = {"execution", "title", "cases", "case_folders", "limits", "profile"}
+OUTSIDE_IDENTITY = {"execution", "title", "cases", "case_folders", "pantograph", "limits", "profile"}
 """Keys of a campaign file on which its results do not depend, or whose content has its own digest."""
 
 
@@ -91,7 +92,8 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     Raises:
         InputError: A case, table, key, condition, limit or system is wrong.
     """
-    changes = parse_changes(file.set)
+    named = replace_pantographs([str(folder / name) for name in file.pantograph])
+    changes = (*named, *parse_changes(file.set))
     catalogue = open_catalogue([folder / name for name in file.case_folders])
     cases = _read_cases(resolve_cases(file.cases, folder), catalogue)
     limits = () if file.limits is None else read_limits(folder / file.limits)
@@ -110,6 +112,12 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
         "campaign": drop_keys(file.model_dump(mode="json", exclude=OUTSIDE_IDENTITY), PROVENANCE),
         "cases": {case.id: [case.digest, limits_digest(case.limits)] for case in limited},
         "designs": json_digest([list_identifying_rows(axis) for axis in design.axes]),
+        "pantographs": [
+            json_digest(
+                read_named_pantograph(Path(str(change.value))).model_dump(mode="json", exclude={"fmu": {"model"}})
+            )
+            for change in named
+        ],
         "profile": None if profile is None else profile.profile.model_dump(mode="json"),
         "suite": suite_digest(),
     }

@@ -13,7 +13,7 @@ from rich.text import Text
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import indent_text
-from pantocheck.conformance.app.commands.options import SetOption, TrustOption
+from pantocheck.conformance.app.commands.options import PantographOption, SetOption, TrustOption
 from pantocheck.conformance.app.commands.progress_display import show_line
 from pantocheck.conformance.campaigns.campaign_columns import choose_values
 from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress
@@ -56,6 +56,7 @@ def campaign_command(
         typer.Option(metavar="KEY=VALUES", help="Vary an input: START:STOP:STEP or VALUE,VALUE; repeat for a grid."),
     ] = None,
     changed: SetOption = None,
+    pantograph: PantographOption = None,
     folders: CasesOption = None,
     system: Annotated[
         list[str] | None,
@@ -111,6 +112,7 @@ def campaign_command(
     design: dict[str, object] = {
         "vary": variations or None,
         "set": changed,
+        "pantograph": [str(Path(name).resolve()) for name in pantograph or ()] or None,
         "systems": system,
         "limits": None if limits is None else str(limits.resolve()),
         "profile": profile,

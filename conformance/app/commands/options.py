@@ -29,6 +29,12 @@ SetOption = Annotated[
         help="Change an input of the case, its line or its pantographs; repeat the option for several.",
     ),
 ]
+PantographOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Pantograph file or FMU in place of the pantographs of the case; repeat it for several in running order."
+    ),
+]
 LineOption = Annotated[
     str,
     typer.Option(help="Measured line: id of a case, or path of a case or line file.", autocompletion=complete_case),

@@ -19,6 +19,7 @@ from pantocheck.conformance.app.commands.options import (
     FormatsOption,
     LanguageOption,
     OutOption,
+    PantographOption,
     ReportNumberOption,
     SetOption,
     TrustOption,
@@ -60,12 +61,6 @@ PlanOption = Annotated[
 ]
 SystemOption = Annotated[
     str | None, typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin")
-]
-PantographOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        help="Pantograph file or FMU in place of the pantographs of the case; repeat it for several in running order."
-    ),
 ]
 LimitsOption = Annotated[
     Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")

@@ -1,12 +1,15 @@
 """A pantograph as FMU in a case: the same quantities, two instances, and what never runs it."""
 
+import csv
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from helpers.fmu_fixtures import WriteFmu
 from helpers.short_cases import change_case
+from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.self_test.adapter_check import build_short_case, build_twin_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
@@ -102,3 +105,19 @@ def test_a_controller_is_graded_and_one_with_a_wrong_sign_fails(write_fmu: Write
     [criterion] = [row for row in result.criteria if row.quantity == "std_force_N"]
     assert criterion.verdict == verdict, criterion.value
     assert result.verdict == {"pass": "unconfirmed", "fail": "fail"}[verdict]
+
+
+def test_a_parameter_of_an_fmu_is_an_axis_of_a_campaign(write_fmu: WriteFmu, tmp_path: Path) -> None:
+    """A skyhook of 60 N s/m changes the spread of the force, here by 0.3 N of 27 N."""
+    write_fmu(is_linear=False, parameters={"skyhook": 0.0, "delay": 3.0, "limit": 50.0})
+    options = ["--pantograph", str(tmp_path / "fmu" / "model.fmu"), "--workers", "1", "--out", str(tmp_path / "runs")]
+    changes = ["discretisation.element_m=2.0", "discretisation.time_step_s=0.004"]
+    options += [word for change in changes for word in ("--set", change)]
+    axis = ["--vary", "pantograph.fmu.parameters.skyhook=0,60"]
+    result = CliRunner().invoke(app, ["campaign", "en50318-2002/250", *axis, *options])
+    assert result.exit_code == 0, result.output
+    with (tmp_path / "runs" / "campaign.csv").open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["pantograph.fmu.parameters.skyhook"]) for row in rows] == [0.0, 60.0]
+    passive, active = (float(row["1.std_force_N"]) for row in rows)
+    assert abs(active - passive) > 0.1
