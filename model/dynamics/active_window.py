@@ -50,6 +50,16 @@ changes the contact force by 3e-8 N with 5e-5 s, by 3e-5 N with 3e-5 s, and by 2
 """
 
 
+# Held stretches move as a whole: a change of tension runs ahead of the waves, from stretch to stretch, over 2 to 12
+# stretches for usual and unusual wires, so that no speed bounds it. The window of such a line grows with the motion
+# itself: stations are held at rest as long as the outermost part of the window, the guard, is quiet. A guard is longer
+# than the longest stretch, so that only its own motion can move what lies beyond. The window does not shrink, because
+# what returns from a station has no bound either.
+QUIET = 1e-11
+"""Velocity of the wires below which a guard is at rest [m/s]: within 100 s a station beyond it would move by 1e-9 m,
+which changes a contact force by 5e-5 N at 50 kN/m."""
+
+
 class WindowArrays(NamedTuple):
     """Limits of the active window."""
 
@@ -67,7 +77,9 @@ class WindowArrays(NamedTuple):
     reach: float
     """Largest half-width around the pantographs [m]."""
     whole_line: bool
-    """Whether the whole line is active at all times."""
+    """Whether no reasoning limits the window: the whole line is active, or a window that grows with the motion."""
+    guard: float
+    """Length of the guard of a window that grows with the motion, else zero [m]."""
 
 
 class Window(NamedTuple):
@@ -81,19 +93,26 @@ def build_window_arrays(line: DiscretisedLine, passage: Passage) -> WindowArrays
     """Limits of the active window of a passage.
 
     With an infinite reach the whole line is active if `kept_behind` is infinite, too, if the train is faster than the
-    waves, or if short waves do not decay (`LEAST_DAMPING`).
+    waves, or if short waves do not decay (`LEAST_DAMPING`). It is active with modal damping, too: a mode moves all of
+    it at once. With held stretches the window grows with the motion.
     """
     c = max_wave_speed(line)
     damping = min(line.catenary.rayleigh(wire.kind).stiffness_coefficient for wire in line.catenary.wires)
     kept = passage.kept_behind if passage.speed < c and damping >= LEAST_DAMPING else math.inf
     ahead = math.inf if math.isinf(kept) else 0.0
-    whole = math.isinf(min(kept, passage.reach))
-    return WindowArrays(line.mesh.position, c, passage.duration, kept, ahead, passage.reach, whole)
+    guard, position = 0.0, line.mesh.position
+    if line.stretches.first.size and not math.isinf(min(passage.kept_behind, passage.reach)):
+        end = np.minimum(line.stretches.first + line.stretches.coefficient.shape[2], position.size) - 1
+        guard = MIN_HALF_WIDTH + float((position[end] - position[line.stretches.first]).max())
+    if line.catenary.modal_damping:
+        guard, kept, ahead = 0.0, math.inf, math.inf
+    whole = bool(line.stretches.first.size or line.catenary.modal_damping) or math.isinf(min(kept, passage.reach))
+    return WindowArrays(position, c, passage.duration, kept, ahead, passage.reach, whole, guard)
 
 
 def build_whole_window(line: DiscretisedLine) -> WindowArrays:
     """Active window that is the whole line at all times."""
-    return WindowArrays(line.mesh.position, max_wave_speed(line), math.inf, math.inf, math.inf, math.inf, True)
+    return WindowArrays(line.mesh.position, max_wave_speed(line), math.inf, math.inf, math.inf, math.inf, True, 0.0)
 
 
 @plain_kernel
@@ -120,17 +139,46 @@ def half_widths(limits: WindowArrays, speed: float, elapsed: Any) -> tuple[Any, 
 
 
 @kernel
-def active_window(limits: WindowArrays, train: Train) -> Window:
-    """Stations inside the window, rounded outwards to whole vectors; the whole line without a pantograph."""
-    first, last = 0, limits.position.size - 1
-    if train.position.size > 0 and not limits.whole_line:
-        behind, ahead = half_widths(limits, train.speed[0], train.elapsed[0])
+def active_window(limits: WindowArrays, train: Train, w: Array, active: Indices) -> Window:
+    """Stations inside the window, rounded outwards to whole vectors; the whole line without a pantograph.
+
+    Args:
+        limits: Limits of the window.
+        train: State of the pantographs.
+        w: Deflections of the line, (3, B, S').
+        active: First and last active station of the last step, the last before the first in front of the first step.
+    """
+    end = limits.position.size - 1
+    first, last = 0, end
+    if train.position.size > 0 and (limits.guard > 0.0 or not limits.whole_line):
         rear, front = train.position[0], train.position[0]
         for p in range(1, train.position.size):
             rear, front = min(rear, train.position[p]), max(front, train.position[p])
-        first = search(limits.position, first, last, rear - behind)
-        last = search(limits.position, first, last, front + ahead)
+        if limits.guard == 0.0:
+            behind, ahead = half_widths(limits, train.speed[0], train.elapsed[0])
+            first = search(limits.position, first, last, rear - behind)
+            last = search(limits.position, first, last, front + ahead)
+        else:
+            rear, front = rear - 2 * limits.guard, front + 2 * limits.guard
+            if active[0] <= active[1]:
+                first, last = active[0], min(active[1], end)
+                rear, front = limits.position[first], limits.position[last]
+                if _moves(w, first, search(limits.position, first, end, rear + limits.guard)):
+                    rear -= limits.guard
+                if _moves(w, search(limits.position, 0, end, front - limits.guard), last):
+                    front += limits.guard
+            first, last = search(limits.position, 0, end, rear), search(limits.position, 0, end, front)
     return Window(first // LANES * LANES, last // LANES * LANES + LANES - 1)
+
+
+@kernel
+def _moves(w: Array, first: int, last: int) -> bool:
+    """Whether some wire moves between two stations."""
+    for b in range(w.shape[1]):
+        for s in range(first, last + 1):
+            if not abs(w[1, b, s]) <= QUIET:
+                return True
+    return False
 
 
 def find_unknown(limits: WindowArrays, passage: Passage, time: Array) -> NDArray[np.bool_]:

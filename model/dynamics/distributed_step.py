@@ -16,6 +16,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from pantocheck.model.description.arrays import Array, Indices
+from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.block_tridiagonal import Factor, solve_stations
 from pantocheck.model.dynamics.connector_step import inner_product
 from pantocheck.model.dynamics.kernel_compilation import kernel
@@ -109,9 +110,12 @@ def stack_vectors(distributed: DistributedArrays, values: Array, layout: Layout,
 
 @kernel
 def predict_distributed(
-    distributed: DistributedArrays, forces: ScalarForces, motion: Motion, work: ScalarWorkspace
+    distributed: DistributedArrays, forces: ScalarForces, motion: Motion, work: ScalarWorkspace, window: Window
 ) -> None:
-    """Fill the predicted distributed forces, and load the rows with those of the last step as a first guess."""
+    """Fill the predicted distributed forces, and load the rows with those of the last step as a first guess.
+
+    A force outside of the active window is predicted as it is: no motion changes it.
+    """
     offset, law = motion.force.size - distributed.number, forces.law
     for n in range(offset, motion.force.size):
         work.predicted[n] = law.preload[n]
@@ -119,29 +123,35 @@ def predict_distributed(
     plane = motion.w.shape[1] * motion.w.shape[2]
     for z in range(distributed.force.size):
         n, first, size, at = _strip(distributed, motion, z)
+        if _outside(distributed, z, size, window):
+            work.predicted[n] = motion.force[n]
+            continue
         elongation = inner_product(distributed.coefficient, first, size, motion.w, motion.r, at)
         rate = inner_product(distributed.coefficient, first, size, motion.w, motion.r, at + plane)
         work.predicted[n] += law.stiffness[n] * elongation + law.damping[n] * rate
-        _load_strip(distributed, motion, z, -motion.force[n])
+        _load_strip(distributed, motion, z, -motion.force[n], window)
 
 
 @kernel
-def accelerate_distributed(distributed: DistributedArrays, motion: Motion, work: ScalarWorkspace) -> None:
+def accelerate_distributed(
+    distributed: DistributedArrays, motion: Motion, work: ScalarWorkspace, window: Window
+) -> None:
     """Compute the accelerations of the elongations under all forces."""
     plane = motion.w.shape[1] * motion.w.shape[2]
     for n in range(motion.force.size - distributed.number, motion.force.size):
         work.acceleration[n] = 0.0
     for z in range(distributed.force.size):
         n, first, size, at = _strip(distributed, motion, z)
-        work.acceleration[n] += inner_product(distributed.response, first, size, motion.w, motion.r, at + 2 * plane)
+        if not _outside(distributed, z, size, window):
+            work.acceleration[n] += inner_product(distributed.response, first, size, motion.w, motion.r, at + 2 * plane)
 
 
 @kernel
-def load_distributed(distributed: DistributedArrays, motion: Motion, work: ScalarWorkspace) -> None:
+def load_distributed(distributed: DistributedArrays, motion: Motion, work: ScalarWorkspace, window: Window) -> None:
     """Load the rows with the changes of the distributed forces since the last step."""
     for z in range(distributed.force.size):
         n, _, _, _ = _strip(distributed, motion, z)
-        _load_strip(distributed, motion, z, -work.change[n])
+        _load_strip(distributed, motion, z, -work.change[n], window)
 
 
 @kernel
@@ -153,10 +163,17 @@ def _strip(distributed: DistributedArrays, motion: Motion, z: int) -> tuple[int,
 
 
 @kernel
-def _load_strip(distributed: DistributedArrays, motion: Motion, z: int, value: float) -> None:
-    """Add a value times the coefficients of a strip to the forces on its row."""
+def _outside(distributed: DistributedArrays, z: int, size: int, window: Window) -> bool:
+    """Whether a strip has no station inside the window."""
+    return bool(distributed.station[z] > window.last or distributed.station[z] + size <= window.first)
+
+
+@kernel
+def _load_strip(distributed: DistributedArrays, motion: Motion, z: int, value: float, window: Window) -> None:
+    """Add a value times the coefficients of a strip to the forces on its row inside the window."""
     _, first, size, at = _strip(distributed, motion, z)
     force, x = at + 2 * motion.w.shape[1] * motion.w.shape[2], splat(value)
-    for i in range(0, size, LANES):
+    start = distributed.station[z]
+    for i in range(max(0, window.first - start), min(size, window.last + 1 - start), LANES):
         store(motion.w, force + i, load(motion.w, force + i) + x * load(distributed.coefficient, first + i))
         store(motion.r, force + i, load(motion.r, force + i) + x * load(distributed.coefficient, first + size + i))

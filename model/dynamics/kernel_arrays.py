@@ -135,15 +135,14 @@ def build_kernel_arrays(
     Args:
         line: Discretised line.
         time_step: Time step [s].
-        window: Limits of the active window; None: the whole line is active. With modal damping or held stretches the
-            whole line is active, too: a mode moves all of it, and a stretch moves its neighbours at once.
+        window: Limits of the active window; None: the whole line is active.
         load: Position of an external load.
 
     Returns:
         Arrays of the line, shared by all simulations with this time step.
     """
     kernel = _build_line_arrays(line, time_step)
-    if window is not None and not kernel.distributed.number:
+    if window is not None:
         kernel = kernel._replace(window=window)
     return kernel if load is None else kernel._replace(load=load)
 

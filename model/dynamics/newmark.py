@@ -50,20 +50,20 @@ def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) ->
         Number of sweeps; zero when the forces did not converge.
     """
     dt = kernel.time_step
-    window = active_window(kernel.window, train)
+    window = active_window(kernel.window, train, motion.w, motion.active)
     hold_passed_stations(dt, motion, window)
     predict_wires(dt, kernel.wires, motion, window)
     add_lumped_forces(kernel.wires, motion, window)
     predict_connectors(kernel.connectors, kernel.forces, motion, work.scalar, window)
-    predict_distributed(kernel.distributed, kernel.forces, motion, work.scalar)
+    predict_distributed(kernel.distributed, kernel.forces, motion, work.scalar, window)
     predict_train(kernel.contact, motion, train, work.contact)
     motion.w[2, kernel.load.row, kernel.load.station] += motion.load[0]
     accelerate_connectors(kernel.connectors, motion, work.node, work.scalar, window)
-    accelerate_distributed(kernel.distributed, motion, work.scalar)
+    accelerate_distributed(kernel.distributed, motion, work.scalar, window)
     accelerate_contacts(kernel.contact, kernel.connectors, kernel.distributed, motion, work.contact, window)
     sweeps = settle_forces(kernel, motion, train, work, window)
     load_connectors(kernel.connectors, motion, work.scalar, window)
-    load_distributed(kernel.distributed, motion, work.scalar)
+    load_distributed(kernel.distributed, motion, work.scalar, window)
     load_contacts(kernel.contact, motion, train, work.contact)
     accelerated = solve_wires(kernel.panels, kernel.wires.extents, window, motion.w, motion.r, work.panels)
     correct_train(dt, train)

@@ -146,7 +146,7 @@ def _advance(
             recording.motion[n, u, 0] = motion.w[0, b, s] + dt * dt / 4 * a
             recording.motion[n, u, 1] = motion.w[1, b, s] + dt / 2 * a
             recording.motion[n, u, 2] = a
-        slack, window = 0, active_window(kernel.window, train)
+        slack, window = 0, active_window(kernel.window, train, motion.w, motion.active)
         for k in range(connectors.run.size - 1):
             first, end = active_run(connectors.station, connectors.run, k, window)
             for c in range(first, end):

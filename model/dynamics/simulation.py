@@ -9,7 +9,7 @@ from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.failures import ImpossiblePassage
 from pantocheck.model.description.pantograph import Pantograph
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
-from pantocheck.model.dynamics.active_window import build_whole_window, build_window_arrays, find_unknown
+from pantocheck.model.dynamics.active_window import build_window_arrays, find_unknown
 from pantocheck.model.dynamics.contact_arrays import build_irregularity_arrays, height_of_irregularity
 from pantocheck.model.dynamics.core_choice import choose_core
 from pantocheck.model.dynamics.foreign_pantograph import build_interface, couple_steps, start_interfaces
@@ -64,10 +64,8 @@ def simulate_passage(
                 "the reference kernel does not move pantographs that are programs: demand another kernel"
             )
         simulate_full_steps(line, passage, (deflection, train), recording, progress=progress)
-        window = window if not (line.stretches.first.size or line.catenary.modal_damping) else build_whole_window(line)
     else:
         kernel = build_kernel_arrays(line, passage.time_step, window)
-        window = kernel.window
         motion = motion_at_rest(kernel.layout, deflection, kernel.distributed.number)
         if interfaces:
             couple_steps(kernel, motion, train, interfaces, recording, progress)

@@ -39,6 +39,7 @@ typedef struct {
     Array position;
     double wave_speed, duration, kept_behind, kept_ahead, reach;
     int64_t whole_line;
+    double guard;
 } WindowArrays;
 typedef struct { int64_t first, last; } Window;
 typedef struct { int64_t piece, fade, panels; Array link, inverse; } PanelFactor;
@@ -123,7 +124,7 @@ typedef struct {
 } Train;
 typedef struct { Indices row, station; Array contact, height, motion; Indices slack; } Recording;
 
-static const double FORCE_TOLERANCE = 1e-9, NEGLIGIBLE_FORCE = 1e-11, FADED = 1e-13, MIN_HALF_WIDTH = 30.0;
+static const double FORCE_TOLERANCE = 1e-9, NEGLIGIBLE_FORCE = 1e-11, FADED = 1e-13, MIN_HALF_WIDTH = 30.0, QUIET = 1e-11;
 static const double PI = 3.14159265358979323846;
 enum { MAX_SWEEPS = 200, LANES = 8, ENTRIES = 6 };
 
@@ -199,10 +200,21 @@ static Place find_element(const double *stations, int64_t size, double position)
     return place;
 }
 
-static Window active_window(const WindowArrays *limits, const Train *train)
+/* Whether some wire moves between two stations. */
+static int moves(const Array *w, int64_t first, int64_t last)
 {
-    int64_t first = 0, last = limits->position.n[0] - 1;
-    if (train->position.n[0] > 0 && !limits->whole_line) {
+    for (int64_t b = 0; b < w->n[1]; b++)
+        for (int64_t s = first; s <= last; s++)
+            if (!(fabs(AT3(*w, 1, b, s)) <= QUIET))
+                return 1;
+    return 0;
+}
+
+static Window active_window(const WindowArrays *limits, const Train *train, const Motion *motion)
+{
+    const double *position = limits->position.at, guard = limits->guard;
+    int64_t end = limits->position.n[0] - 1, first = 0, last = end;
+    if (train->position.n[0] > 0 && (guard > 0.0 || !limits->whole_line)) {
         double speed = train->speed.at[0], elapsed = train->elapsed.at[0];
         double front_wave = MIN_HALF_WIDTH + limits->wave_speed * elapsed;
         double behind = front_wave + speed * elapsed, ahead = larger(front_wave - speed * elapsed, MIN_HALF_WIDTH);
@@ -217,8 +229,19 @@ static Window active_window(const WindowArrays *limits, const Train *train)
             rear = smaller(rear, train->position.at[p]);
             front = larger(front, train->position.at[p]);
         }
-        first = search_place(limits->position.at, first, last, rear - behind);
-        last = search_place(limits->position.at, first, last, front + ahead);
+        if (guard > 0.0) {
+            behind = ahead = 2 * guard;
+            if (motion->active.at[0] <= motion->active.at[1]) {
+                first = motion->active.at[0];
+                last = least(motion->active.at[1], end);
+                rear = position[first];
+                front = position[last];
+                behind = moves(&motion->w, first, search_place(position, first, end, rear + guard)) ? guard : 0.0;
+                ahead = moves(&motion->w, search_place(position, 0, end, front - guard), last) ? guard : 0.0;
+            }
+        }
+        first = search_place(position, 0, end, rear - behind);
+        last = search_place(position, first, end, front + ahead);
     }
     return (Window){whole_vectors(first), whole_vectors(last) + LANES - 1};
 }
@@ -445,26 +468,34 @@ static void load_connectors(const ConnectorArrays *connectors, const Motion *mot
     }
 }
 
-typedef struct { int64_t force, first, size, at; } Strip;
+typedef struct { int64_t force, first, size, at, station; } Strip;
 
-/* Scalar force of a strip, index of its first value, its size, and its index in a flattened plane of rows. */
+/* Scalar force of a strip, index of its first value, size, index in a flattened plane of rows, and first station. */
 static Strip strip_of(const DistributedArrays *distributed, const Motion *motion, int64_t z)
 {
     int64_t first = distributed->first.at[z], end = distributed->first.at[z + 1];
     return (Strip){motion->force.n[0] - distributed->number + distributed->force.at[z], first, (end - first) / 2,
-                   distributed->row.at[z] * motion->w.n[2] + distributed->station.at[z]};
+                   distributed->row.at[z] * motion->w.n[2] + distributed->station.at[z], distributed->station.at[z]};
 }
 
-static void load_strip(const DistributedArrays *distributed, const Motion *motion, Strip strip, double value)
+static int outside(Strip strip, Window window)
 {
-    int64_t at = strip.at + 2 * motion->w.n[1] * motion->w.n[2];
-    const double *coefficient = distributed->coefficient.at + strip.first;
-    CHOOSE(add_multiple)(motion->w.at + at, value, coefficient, strip.size);
-    CHOOSE(add_multiple)(motion->r.at + at, value, coefficient + strip.size, strip.size);
+    return strip.station > window.last || strip.station + strip.size <= window.first;
+}
+
+static void load_strip(const DistributedArrays *distributed, const Motion *motion, Strip strip, double value,
+                       Window window)
+{
+    int64_t start = most(0, window.first - strip.station);
+    int64_t size = least(strip.size, window.last + 1 - strip.station) - start;
+    int64_t at = strip.at + 2 * motion->w.n[1] * motion->w.n[2] + start;
+    const double *coefficient = distributed->coefficient.at + strip.first + start;
+    CHOOSE(add_multiple)(motion->w.at + at, value, coefficient, size);
+    CHOOSE(add_multiple)(motion->r.at + at, value, coefficient + strip.size, size);
 }
 
 static void predict_distributed(const DistributedArrays *distributed, const ScalarForces *forces, const Motion *motion,
-                                const ScalarWorkspace *work)
+                                const ScalarWorkspace *work, Window window)
 {
     const ScalarLaw *law = &forces->law;
     int64_t plane = motion->w.n[1] * motion->w.n[2];
@@ -476,33 +507,39 @@ static void predict_distributed(const DistributedArrays *distributed, const Scal
         Strip strip = strip_of(distributed, motion, z);
         const double *coefficient = distributed->coefficient.at + strip.first;
         const double *w = motion->w.at + strip.at, *r = motion->r.at + strip.at;
+        int64_t n = strip.force;
+        if (outside(strip, window)) {
+            work->predicted.at[n] = motion->force.at[n];
+            continue;
+        }
         double elongation = inner_product(coefficient, strip.size, w, r);
         double rate = inner_product(coefficient, strip.size, w + plane, r + plane);
-        int64_t n = strip.force;
         work->predicted.at[n] += law->stiffness.at[n] * elongation + law->damping.at[n] * rate;
-        load_strip(distributed, motion, strip, -motion->force.at[n]);
+        load_strip(distributed, motion, strip, -motion->force.at[n], window);
     }
 }
 
 static void accelerate_distributed(const DistributedArrays *distributed, const Motion *motion,
-                                   const ScalarWorkspace *work)
+                                   const ScalarWorkspace *work, Window window)
 {
     int64_t plane = motion->w.n[1] * motion->w.n[2];
     for (int64_t n = motion->force.n[0] - distributed->number; n < motion->force.n[0]; n++)
         work->acceleration.at[n] = 0.0;
     for (int64_t z = 0; z < distributed->force.n[0]; z++) {
         Strip strip = strip_of(distributed, motion, z);
-        work->acceleration.at[strip.force] +=
-            inner_product(distributed->response.at + strip.first, strip.size, motion->w.at + strip.at + 2 * plane,
-                          motion->r.at + strip.at + 2 * plane);
+        if (!outside(strip, window))
+            work->acceleration.at[strip.force] +=
+                inner_product(distributed->response.at + strip.first, strip.size, motion->w.at + strip.at + 2 * plane,
+                              motion->r.at + strip.at + 2 * plane);
     }
 }
 
-static void load_distributed(const DistributedArrays *distributed, const Motion *motion, const ScalarWorkspace *work)
+static void load_distributed(const DistributedArrays *distributed, const Motion *motion, const ScalarWorkspace *work,
+                             Window window)
 {
     for (int64_t z = 0; z < distributed->force.n[0]; z++) {
         Strip strip = strip_of(distributed, motion, z);
-        load_strip(distributed, motion, strip, -work->change.at[strip.force]);
+        load_strip(distributed, motion, strip, -work->change.at[strip.force], window);
     }
 }
 
@@ -992,20 +1029,20 @@ static int64_t settle_forces(const KernelArrays *kernel, const Motion *motion, c
 static int64_t step(const KernelArrays *kernel, const Motion *motion, const Train *train, const Workspace *work)
 {
     double dt = kernel->time_step;
-    Window window = active_window(&kernel->window, train);
+    Window window = active_window(&kernel->window, train, motion);
     hold_passed_stations(dt, motion, window);
     predict_wires(dt, &kernel->wires, motion, window);
     add_lumped_forces(&kernel->wires, motion, window);
     predict_connectors(&kernel->connectors, &kernel->forces, motion, &work->scalar, window);
-    predict_distributed(&kernel->distributed, &kernel->forces, motion, &work->scalar);
+    predict_distributed(&kernel->distributed, &kernel->forces, motion, &work->scalar, window);
     predict_train(&kernel->contact, motion, train, &work->contact);
     AT3(motion->w, 2, kernel->load.row, kernel->load.station) += motion->load.at[0];
     accelerate_connectors(&kernel->connectors, motion, &work->node, &work->scalar, window);
-    accelerate_distributed(&kernel->distributed, motion, &work->scalar);
+    accelerate_distributed(&kernel->distributed, motion, &work->scalar, window);
     accelerate_contacts(kernel, motion, &work->contact, window);
     int64_t sweeps = settle_forces(kernel, motion, train, work, window);
     load_connectors(&kernel->connectors, motion, &work->scalar, window);
-    load_distributed(&kernel->distributed, motion, &work->scalar);
+    load_distributed(&kernel->distributed, motion, &work->scalar, window);
     load_contacts(&kernel->contact, motion, train, &work->contact);
     double accelerated = solve_wires(&kernel->panels, &kernel->wires.extents, window, motion, &work->panels);
     correct_train(dt, train);
@@ -1050,7 +1087,7 @@ static void record(const KernelArrays *kernel, const Motion *motion, const Train
         AT3(recording->motion, n, u, 2) = a;
     }
     int64_t slack = 0;
-    Window window = active_window(&kernel->window, train);
+    Window window = active_window(&kernel->window, train, motion);
     for (int64_t k = 0; k < connectors->run.n[0] - 1; k++) {
         Window active = active_run(&connectors->station, &connectors->run, k, window);
         for (int64_t c = active.first; c < active.last; c++)

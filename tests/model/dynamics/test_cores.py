@@ -107,6 +107,8 @@ def build_simulations() -> Iterator[tuple[str, Callable[[], State]]]:
         way = replace(fast, pantographs=bare, ramp=0.1)
         yield f"irregularity, {name}", lambda way=way: simulate(discretise(rough, 2.5), way, 1.5)
     yield "held stretches", lambda: simulate(discretise(fix_along_track(plain), 2.5), fast, 1.0)
+    growing = replace(fast, kept_behind=0.0)
+    yield "held stretches, window", lambda: simulate(discretise(fix_along_track(long), 1.0), growing, 1.0)
     yield "modal damping", lambda: simulate(discretise(modal, 2.5), fast, 1.0)
     window = Passage(pair, (120.0, 100.0), 60.0, 0.6, 2e-3, kept_behind=30.0, reach=60.0)
     yield "window", lambda: simulate(discretise(long, 1.0), window, 1.0)

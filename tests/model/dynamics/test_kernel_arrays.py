@@ -28,8 +28,7 @@ def test_kernel_arrays_are_contiguous_and_finite(catenary: Catenary) -> None:
     """The compiled step is specialised for contiguous arrays; another layout would compile it a second time."""
     line = discretise(catenary, 1.0)
     window = build_window_arrays(line, PASSAGE)
-    # The window of held stretches is infinite on purpose.
-    for array in leaves(build_kernel_arrays(line, 1e-3, window)._replace(window=window)):
+    for array in leaves(build_kernel_arrays(line, 1e-3, window)):
         assert array.flags.c_contiguous
         assert array.dtype == np.bool_ or np.isfinite(array).all()
 
@@ -54,10 +53,9 @@ def test_modal_damping_makes_the_whole_line_active() -> None:
     """A mode moves every station, so the active window must not be limited; without modes it is."""
     line = discretise(simple_line(damping=dict.fromkeys(Kind, DAMPED[Kind.DROPPER])), 2.0)
     modal = replace(line, catenary=replace(line.catenary, modal_damping=(ModalBand(0.8, 1.5, 0.02),)))
-    limits = build_window_arrays(line, PASSAGE)
-    limited, whole = (build_kernel_arrays(variant, 1e-3, limits).window for variant in (line, modal))
+    limited, whole = (build_window_arrays(variant, PASSAGE) for variant in (line, modal))
     assert (limited.reach, limited.wave_speed, limited.whole_line) == (50.0, max_wave_speed(line), False)
-    assert whole.whole_line
+    assert (whole.whole_line, whole.guard) == (True, 0.0)
 
 
 def test_workspace_fits_the_kernel_arrays() -> None:
