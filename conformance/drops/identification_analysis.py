@@ -304,11 +304,10 @@ def compute_frequency_response(fit: LineFit, record_fit: RecordFit) -> Frequency
     to_accelerance = (1j * omega) ** (3 - MOTION_ORDER[record.quantity]) / (record.drop.mass * STANDARD_GRAVITY)
     offset = rest.mean(axis=0) if rest.shape[0] > 10 else signals.mean(axis=0)
     measured = np.fft.rfft(signals - offset, axis=0)[used] / record.rate
-    to_release = np.exp(-fit.poles * (linear.first - decay.release.time))
-    to_release = to_release / filter_gain(linear.taps, fit.poles, linear.rate)
     inside = np.abs(fit.poles) < 2 * np.pi * fit.band.fitted
-    residues = (record_fit.residues * to_release[:, None])[inside]
     poles, duration = fit.poles[inside], n / record.rate
+    to_release = np.exp(-poles * (linear.first - decay.release.time)) / filter_gain(linear.taps, poles, linear.rate)
+    residues = record_fit.residues[inside] * to_release[:, None]
 
     def transform(decays: ComplexArray) -> ComplexArray:
         """Transform of exp(lambda t) over the duration, (k, m) [s]."""

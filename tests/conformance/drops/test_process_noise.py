@@ -137,6 +137,17 @@ def test_ambient_level_stands_beside_the_noise_of_each_group(windy: tuple[Identi
     assert all(group.ambient_rms > group.noise_rms > 0 for group in groups)
 
 
+def test_poles_of_a_user_without_ambient_motion_are_warned_of(windy: tuple[Identification, FieldRecord]) -> None:
+    """The poles above 1.5 Hz are left out: their modes are a misfit of the fit, and no wrong clock."""
+    found, made = windy
+    start = found.fit.poles[found.fit.poles.imag < 2 * np.pi * 1.5]
+    (placed,) = identify_modes((made.record,), 2.3, start)
+    assert placed.fit.misfit > 10
+    assert placed.clocks == ()
+    assert measure_ambient_motion(placed.fit, 0.3, 3.3) is None
+    assert any("the intervals do not contain this motion" in text for text in placed.warnings)
+
+
 def test_calm_record_has_no_process_noise() -> None:
     made = make_field_record(1, Disturbance())
     found = identify(made)
