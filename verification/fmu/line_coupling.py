@@ -189,7 +189,7 @@ def main(names: Sequence[str]) -> None:
                 archive = Path(folder) / "line.fmu"
                 archive.write_bytes(build_line_fmu(case, fmi, "height"))
                 difference, quantity = compare_quantities(expected, run_exported(case, archive))
-            print(f"| {case.id} | {fmi} | {100 * difference:.5f} % | {quantity} |", flush=True)
+            print(f"| {case.id} | {fmi} | {100 * difference:.1e} % | {quantity} |", flush=True)
 
 
 if __name__ == "__main__":
