@@ -1,11 +1,12 @@
 """Coverage of the intervals of a mass drop in the field: frequencies, damping ratios, coefficients of damping.
 
-python -m verification.tables.field_coverage RECORDS.csv [--records 30]
+python -m verification.tables.field_coverage RECORDS.csv [--records 30] [--rows ROW ...]
 
 Records. `field_records` simulates drops on three lines, whose tensions differ from the stated ones by 1 % (standard
 deviation), with 2 to 5 sensors, 2 to 4 minutes and white noise of 3 mm/s2. A record of a row is identified up to
 6.2 Hz; its damping is fitted on the line as stated. RECORDS.csv has one row for each record. Records that it holds are
-not repeated, so that a run can be continued, and a larger number of records adds to those of a smaller one.
+not repeated, so that a run can be continued, and a larger number of records adds to those of a smaller one. Rows with
+fewer than 1,000 intervals are run with more records; their number depends on that of the intervals, not on shares.
 
 Seeds. Record r of the row with number k in `ROWS` has the seed (50333, k, r), with r = 0, 1, 2 ... It is on line r
 modulo 3, and has 2 + (r // 3) modulo 4 sensors. This rule was recorded before the first run with these seeds, and no
@@ -226,10 +227,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=Path, metavar="RECORDS.csv")
     parser.add_argument("--records", type=int, default=30, help="records of each row; default: %(default)s")
+    parser.add_argument("--rows", nargs="+", choices=ROWS, default=list(ROWS), help="rows that are run; default: all")
     options = parser.parse_args()
     done = {(row["disturbance"], int(row["record"])) for row in read_rows(options.results)}
     for number in range(options.records):
-        for name in ROWS:
+        for name in options.rows:
             if (name, number) not in done:
                 append_row(options.results, measure_record(name, number))
     stored = read_rows(options.results)
