@@ -27,10 +27,11 @@ from pantocheck.model.dynamics.active_window import build_window_arrays
 from pantocheck.model.dynamics.core_choice import CORE_VARIABLE, Core, UnusableCore, call_core, choose_core, load_core
 from pantocheck.model.dynamics.core_source import SOURCES
 from pantocheck.model.dynamics.kernel_arrays import Load, build_kernel_arrays
-from pantocheck.model.dynamics.motion import Motion
+from pantocheck.model.dynamics.motion import Motion, motion_at_rest
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.dynamics.train import Train, build_empty_train
+from pantocheck.model.statics.static_solver import Deflection
 
 needs_compiler = pytest.mark.skipif(COMPILER is None, reason="a C compiler is needed")
 ENTRIES = {
@@ -208,6 +209,23 @@ def test_threads_do_not_touch_each_other(core: Core, use_core: Callable[[Core | 
     for simulation, state in zip(work, together, strict=True):
         for quantity, values in simulation().items():
             np.testing.assert_array_equal(values, state[quantity])
+
+
+@needs_compiler
+@pytest.mark.parametrize("unilateral", [False, True])
+def test_connector_that_can_push_is_not_slack_without_force(
+    unilateral: bool, core: Core, use_core: Callable[[Core | str], None]
+) -> None:
+    """A line that nothing moves, without preload: all its connectors carry 0 N, and those that cannot push are slack."""
+    use_core(core)
+    line = discretise(simple_line(), 2.5)
+    zeros = np.zeros_like(line.connectors.preload)
+    law = line.connectors._replace(preload=zeros, unilateral=np.full(zeros.size, unilateral))
+    line = replace(line, connectors=law)
+    kernel, recorded = build_kernel_arrays(line, 1e-3), allocate_recording(line, (), 1, 0)
+    rest = Deflection(np.zeros_like(line.state.deflection), zeros)
+    simulate_steps(kernel, motion_at_rest(kernel.layout, rest), build_empty_train(1), np.zeros(1), recorded)
+    assert recorded.slack.tolist() == [zeros.size if unilateral else 0]
 
 
 @needs_compiler
