@@ -68,6 +68,8 @@ def main() -> int:
         for row in rows:
             shown = row["words"].startswith(options.only)
             times: dict[str, list[tuple[float, float, float]]] = {python: [] for python in folders}
+            for folder in folders.values() if "prepared_by" in row else ():
+                subprocess.run(shlex.split(row["prepared_by"]), cwd=folder, check=True, capture_output=True)
             for _ in range(options.repeat if shown else 1):
                 for python, folder in folders.items():
                     loop = measure([python, "-c", LOOP], folder)[1]

@@ -216,7 +216,7 @@ def test_threads_do_not_touch_each_other(core: Core, use_core: Callable[[Core | 
 def test_connector_that_can_push_is_not_slack_without_force(
     unilateral: bool, core: Core, use_core: Callable[[Core | str], None]
 ) -> None:
-    """A line that nothing moves, without preload: all its connectors carry 0 N, and those that cannot push are slack."""
+    """All connectors of a line that nothing moves carry 0 N without preload; those that cannot push are slack."""
     use_core(core)
     line = discretise(simple_line(), 2.5)
     zeros = np.zeros_like(line.connectors.preload)
