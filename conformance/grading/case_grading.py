@@ -158,6 +158,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "inputs": _list_inputs(case),
             "derived": list_derived_facts(case, delivered.uplift_forces),
             "line_shape": delivered.line_shape,
+            "motion": delivered.motion,
             "input_digest": case.digest,
             "changes": list(case.changes),
             "limits_digest": limits_digest(case.limits),

@@ -166,7 +166,7 @@ class Table:
 class Curves:
     """Place in results.json of the curves of a figure, from which the script of a page draws them again."""
 
-    shown: Literal["force", "uplift", "measured"]
+    shown: Literal["force", "uplift", "measured", "passage"]
     case: int
     """Index of the case in `cases`."""
     owner: str = "0"

@@ -25,7 +25,8 @@ CHOICE_SCRIPTS = ("pole_choice",)
 CURVE_SCRIPTS = (
     *("results", "download", "spectrum", "spans"),
     *("plot_style", "legend", "plot_lines", "plot_keys", "touch", "plot"),
-    *("force_view", "curves_view", "uplift_view", "measured_view", "views"),
+    *("force_view", "curves_view", "uplift_view", "measured_view"),
+    *("motion_data", "passage_scene", "passage_view", "views"),
 )
 """Further parts of the script of a page with results, in the order of their use."""
 

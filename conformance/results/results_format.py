@@ -50,6 +50,7 @@ from pantocheck.conformance.results.case_facts_format import (
     SourceFacts,
     StoredValues,
 )
+from pantocheck.conformance.results.motion_format import PassageMotion
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.supported_frequency import SupportedFrequency
 
@@ -261,8 +262,17 @@ class CaseResult(ResultsPart):
     """Measured run beside this one; missing: nothing is compared."""
     line_shape: Annotated[LineShape | None, Field(exclude_if=is_absent)] = None
     """Line at rest around the analysis section; missing: not known."""
+    motion: Annotated[PassageMotion | None, Field(exclude_if=is_absent)] = None
+    """Moving picture of the passage on this line; missing: none was made."""
     reference: Annotated[ReferenceValues | None, Field(exclude_if=is_absent)] = None
     """Values of the reference simulator; missing: not requested."""
+
+    @model_validator(mode="after")
+    def _place_motion(self) -> Self:
+        drawn = 0 if self.line_shape is None else len(self.line_shape.side.curves)
+        if self.motion is not None and any(wire.curve >= drawn for wire in self.motion.wires):
+            raise ValueError("motion: a wire that the shape of the line does not have")
+        return self
 
     @model_validator(mode="after")
     def _place_reference(self) -> Self:

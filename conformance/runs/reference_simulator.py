@@ -19,6 +19,7 @@ from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs.case_run import run_passage, run_start
 from pantocheck.conformance.runs.core_requirement import require_core
+from pantocheck.conformance.runs.passage_film import film_passage
 from pantocheck.conformance.runs.resolution import (
     list_mesh_frequencies,
     list_model_uncertainty,
@@ -65,9 +66,8 @@ class ReferenceSimulator:
     def run(self, case: Case) -> Delivered:
         """Run a case, with element length and time step halved and doubled, and from other starts."""
         discretisation, steps = case.file.discretisation, _plan_steps(case)
-        delivered, uplift_forces = _deliver(case, discretisation, progress=_begin_run(case, steps))
+        delivered, uplift_forces = self._run_drawn(case, steps)
         line = discretise_line(case.line, discretisation.element_m)
-        shape = build_line_shape(case.line, case.analysed_spans, line)
         tasks: dict[str, Task] = {
             FINE_MESH: partial(_deliver_again, case, discretisation.scale(1 / 2), uplift_forces),
             COARSE_MESH: partial(_deliver_coarse, case, discretisation.scale(2), uplift_forces),
@@ -88,7 +88,17 @@ class ReferenceSimulator:
             for kind in ("start", "line")
         )
         refined, coarse = found[FINE_MESH], found[COARSE_MESH]
-        return replace(delivered, refined=refined, coarse=coarse, starts=starts, changed_lines=lines, line_shape=shape)
+        return replace(delivered, refined=refined, coarse=coarse, starts=starts, changed_lines=lines)
+
+    def _run_drawn(self, case: Case, steps: StepSequence) -> tuple[Delivered, tuple[float, ...] | None]:
+        """Run a case once; result with shape and motion of the line, and uplift forces of its passage [N]."""
+        discretisation = case.file.discretisation
+        delivered, uplift_forces = _deliver(case, discretisation, None, _begin_run(case, steps), self.start_forces)
+        line = discretise_line(case.line, discretisation.element_m)
+        shape, motion = build_line_shape(case.line, case.analysed_spans, line), None
+        if delivered.record is not None and uplift_forces is not None:
+            motion = film_passage(case, line, shape, discretisation, delivered.record, uplift_forces)
+        return replace(delivered, line_shape=shape, motion=motion), uplift_forces
 
     def run_unrefined(self, case: Case) -> Delivered:
         """Run a case once, with the discretisation of the case."""
@@ -104,6 +114,15 @@ class UnrefinedSimulator(ReferenceSimulator):
     def run(self, case: Case) -> Delivered:
         """Run a case once, with the discretisation of the case."""
         return self.run_unrefined(case)
+
+
+@dataclass(frozen=True)
+class FilmingSimulator(ReferenceSimulator):
+    """Reference simulator that runs a case once, with its moving picture."""
+
+    def run(self, case: Case) -> Delivered:
+        """Run a case once, with the discretisation of the case."""
+        return self._run_drawn(case, StepSequence(_LOGGER, case.id, {COMPILATION: 0.0, OWN_MESH: 1.0}))[0]
 
 
 def _plan_steps(case: Case) -> StepSequence:

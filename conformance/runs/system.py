@@ -9,6 +9,7 @@ from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable, StartTable
 from pantocheck.conformance.results.case_facts_format import FmuRun
+from pantocheck.conformance.results.motion_format import PassageMotion
 from pantocheck.conformance.results.supported_frequency import SupportedFrequency
 
 
@@ -61,6 +62,8 @@ class Delivered:
     """FMUs that moved pantographs."""
     line_shape: LineShape | None = None
     """Line at rest for a drawing; None: not known."""
+    motion: PassageMotion | None = None
+    """Moving picture of the passage; None: none was made."""
     refined: "Delivered | None" = None
     """The same case with element length and time step halved, for the discretisation error."""
     coarse: "Delivered | None" = None

@@ -181,21 +181,22 @@ def _moves(w: Array, first: int, last: int) -> bool:
     return False
 
 
-def find_unknown(limits: WindowArrays, passage: Passage, time: Array) -> NDArray[np.bool_]:
-    """Find the times at which the motion of each watched station is unknown: a wave from a cut can have reached it.
+def find_unknown(limits: WindowArrays, passage: Passage, stations: Array, time: Array) -> NDArray[np.bool_]:
+    """Find the times at which the motion of each station is unknown: a wave from a cut can have reached it.
 
     Args:
         limits: Limits of the active window.
-        passage: Train, its speed and the U watched stations.
-        time: Times at the ends of the steps, (T,) [s].
+        passage: Train and its speed.
+        stations: Positions of the stations, (U,) [m].
+        time: Times at the ends of steps, rising, (T,) [s].
 
     Returns:
         True where the motion is unknown, (U, T).
     """
-    unknown = np.zeros((len(passage.watched), time.size), dtype=np.bool_)
+    unknown = np.zeros((stations.size, time.size), dtype=np.bool_)
     if limits.whole_line:
         return unknown
-    position = np.array([position for _, position in passage.watched])[:, None]
+    position = stations[:, None]
     widths = np.array([half_widths(limits, passage.speed, time), wave_reach(limits, passage.speed, time)])
     for side, start, end_of_line, direction in (
         (0, min(passage.start), limits.position[0], -1),

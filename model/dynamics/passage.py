@@ -11,6 +11,29 @@ from pantocheck.model.description.pantograph import Pantograph
 
 
 @dataclass(frozen=True)
+class FrameRequest:
+    """Instants and stations of a moving picture of a passage."""
+
+    steps: tuple[int, ...]
+    """Numbers of completed steps, rising, from 1."""
+    rows: tuple[int, ...]
+    stations: tuple[int, ...]
+    """Rows and stations of the mesh."""
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Moving picture of a passage; F frames, R rows, U stations, N connectors, P pantographs of at most n unknowns."""
+
+    displacement: Array
+    """Displacement about the initial state, (F, R, U) [m]; NaN while it is unknown."""
+    tension: Array
+    """Tensions of the connectors, (F, N) [N]."""
+    unknowns: Array
+    """Unknowns of the pantographs, (F, P, n)."""
+
+
+@dataclass(frozen=True)
 class Passage:
     """Pantographs, speed and duration of a simulation."""
 
@@ -39,6 +62,8 @@ class Passage:
     """Time over which every pantograph rises from zero contact force to its static force [s]. Zero: it presses with
     its static force from the start.
     """
+    frames: FrameRequest | None = None
+    """Moving picture to be recorded, unless another program moves a pantograph; None: none."""
 
 
 class ForeignPantograph(Protocol):
@@ -115,3 +140,5 @@ class History:
     """Contact force of each strip, numbered as in a `Train`, (C, T) [N]."""
     coupling: tuple[Coupling, ...] = ()
     """Couplings of the pantographs that other programs move, in running order."""
+    frames: Frames | None = None
+    """Moving picture; None: none was recorded."""

@@ -1,6 +1,8 @@
 """Driver of the time step: advances line and pantographs and records their motion."""
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import NamedTuple, NoReturn
 
 import numpy as np
@@ -14,6 +16,7 @@ from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace, bui
 from pantocheck.model.dynamics.kernel_compilation import entry_kernel, kernel
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
+from pantocheck.model.dynamics.passage import FrameRequest, Frames
 from pantocheck.model.dynamics.train import Train
 
 BLOCK = 500
@@ -36,6 +39,28 @@ class Recording(NamedTuple):
     """Number of slack droppers in the active window, (T,)."""
 
 
+@dataclass
+class FrameRecorder:
+    """Recorder of a moving picture: copies the state of line and pantographs after the requested steps."""
+
+    request: FrameRequest
+    kernel: KernelArrays
+    connectors: int
+    """Number of connectors, whose tensions are the first scalar forces."""
+    taken: list[tuple[Array, Array, Array]] = field(default_factory=list)
+
+    def take(self, steps: int, motion: Motion, train: Train) -> None:
+        """Copy the state after a number of steps if it is requested."""
+        if steps in self.request.steps:
+            at, quarter = np.ix_(self.request.rows, self.request.stations), self.kernel.time_step**2 / 4
+            displacement = motion.w[0][at] + quarter * motion.w[2][at]
+            self.taken.append((displacement, motion.force[: self.connectors].copy(), train.z[0].copy()))
+
+    def build_frames(self) -> Frames:
+        """Frames that were taken."""
+        return Frames(*(np.array(part) for part in zip(*self.taken, strict=True)))
+
+
 def simulate_steps(
     kernel: KernelArrays,
     motion: Motion,
@@ -43,6 +68,7 @@ def simulate_steps(
     load: Array,
     recording: Recording,
     progress: Callable[[float], None] | None = None,
+    frames: FrameRecorder | None = None,
 ) -> None:
     """Advance line and pantographs, in place, by the steps of a recording, and fill it.
 
@@ -53,13 +79,15 @@ def simulate_steps(
         load: External load in each step, upwards, (T,) [N].
         recording: Recording of T steps.
         progress: Called from time to time with the completed share, 0 to 1.
+        frames: Recorder of a moving picture; None: none is requested.
 
     Raises:
         DidNotConverge: The forces of a time step did not converge.
     """
     work = build_workspace(kernel, train)
-    for first in range(0, load.size, BLOCK):
-        block = slice(first, min(first + BLOCK, load.size))
+    stops = {*range(BLOCK, load.size, BLOCK), load.size, *(frames.request.steps if frames else ())}
+    for first, end in pairwise((0, *sorted(stops))):
+        block = slice(first, end)
         part = recording._replace(
             contact=recording.contact[block],
             height=recording.height[block],
@@ -67,10 +95,12 @@ def simulate_steps(
             slack=recording.slack[block],
         )
         steps = _advance(kernel, motion, train, work, load[block], part)
-        if steps < block.stop - first:
+        if steps < end - first:
             refuse_divergence(first + steps, kernel.time_step)
-        if progress:
-            progress(block.stop / load.size)
+        if frames:
+            frames.take(end, motion, train)
+        if progress and (end % BLOCK == 0 or end == load.size):
+            progress(end / load.size)
 
 
 @kernel

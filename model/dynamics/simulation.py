@@ -9,14 +9,14 @@ from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.failures import ImpossiblePassage
 from pantocheck.model.description.pantograph import Pantograph
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
-from pantocheck.model.dynamics.active_window import build_window_arrays, find_unknown
+from pantocheck.model.dynamics.active_window import WindowArrays, build_window_arrays, find_unknown
 from pantocheck.model.dynamics.contact_arrays import build_irregularity_arrays, height_of_irregularity
 from pantocheck.model.dynamics.core_choice import choose_core
 from pantocheck.model.dynamics.foreign_pantograph import build_interface, couple_steps, start_interfaces
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest
-from pantocheck.model.dynamics.passage import ForeignPantograph, History, Passage
-from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
+from pantocheck.model.dynamics.passage import ForeignPantograph, FrameRequest, Frames, History, Passage
+from pantocheck.model.dynamics.recording import FrameRecorder, allocate_recording, simulate_steps
 from pantocheck.model.dynamics.reference_kernel import simulate_full_steps
 from pantocheck.model.dynamics.train import Train, build_train
 from pantocheck.model.fem import beam
@@ -58,6 +58,7 @@ def simulate_passage(
     steps = round(passage.duration / passage.time_step)
     recording = allocate_recording(line, passage.watched, steps, train.owner.size)
     window = build_window_arrays(line, passage)
+    recorder: FrameRecorder | None = None
     if not choose_core().is_compiled:
         if interfaces:
             raise ImpossiblePassage(
@@ -70,13 +71,17 @@ def simulate_passage(
         if interfaces:
             couple_steps(kernel, motion, train, interfaces, recording, progress)
         else:
-            simulate_steps(kernel, motion, train, np.zeros(steps), recording, progress)
+            if passage.frames is not None:
+                recorder = FrameRecorder(passage.frames, kernel, line.connectors.station.size)
+            simulate_steps(kernel, motion, train, np.zeros(steps), recording, progress, recorder)
     time: Array = passage.time_step * np.arange(1, steps + 1).astype(np.float64)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     force, height = recording.contact.T.copy(), recording.height.T.copy()
     first = train.first_strip[:-1]
     watched = recording.motion.transpose(1, 0, 2).copy()
-    watched[find_unknown(window, passage, time)] = np.nan
+    stations = np.array([place for _, place in passage.watched])
+    watched[find_unknown(window, passage, stations, time)] = np.nan
+    frames = None if recorder is None else _hide_unknown(recorder.build_frames(), line, window, passage, time)
     return History(
         time=time,
         position=position,
@@ -85,7 +90,17 @@ def simulate_passage(
         motion=watched,
         strip_force=force,
         coupling=tuple(interface.coupling for interface in interfaces),
+        frames=frames,
     )
+
+
+def _hide_unknown(frames: Frames, line: DiscretisedLine, window: WindowArrays, passage: Passage, time: Array) -> Frames:
+    """Frames with NaN where the motion is unknown."""
+    request = passage.frames or FrameRequest((), (), ())
+    # The first cut may lie between two frames, so that all steps are searched.
+    unknown = find_unknown(window, passage, line.mesh.position[list(request.stations)], time)
+    hidden = unknown[:, np.array(request.steps) - 1].T[:, None]
+    return replace(frames, displacement=np.where(hidden, np.nan, frames.displacement))
 
 
 def _check_passage(line: DiscretisedLine, passage: Passage) -> None:

@@ -1,7 +1,7 @@
 // Views in place of the static figures, and links from criteria to the places of their extremes.
 
 /** Makers of views by the curves of a figure. */
-const VIEWS = { force: (figure) => new ForceView(figure), uplift: viewUplift, measured: viewMeasured };
+const VIEWS = { force: (figure) => new ForceView(figure), uplift: viewUplift, measured: viewMeasured, passage: (figure) => new PassageView(figure) };
 
 /** Views of the page by the figures that they stand for. */
 const views = new Map();
@@ -13,7 +13,7 @@ function addView(figure) {
   still.addEventListener("click", () => {
     still.setAttribute("aria-pressed", String(!figure.classList.toggle("viewed")));
   });
-  const hint = translate("Drag to zoom, with shift to move; two fingers zoom on a touch screen.");
+  const hint = view.hint ?? translate("Drag to zoom, with shift to move; two fingers zoom on a touch screen.");
   const tools = element("div", { class: "tools" }, ...view.tools, still, element("span", { class: "hint" }, hint));
   figure.prepend(tools, element("div", { class: "view" }, ...view.parts));
   figure.classList.add("viewed");
@@ -63,3 +63,6 @@ for (const figure of document.querySelectorAll("figure[data-curves]")) {
     });
   }
 }
+
+followInstant();
+addEventListener("hashchange", followInstant);

@@ -1,7 +1,7 @@
 """`pantocheck readings`: values and verdicts of a record or case under every documented reading of its evaluation."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -69,7 +69,8 @@ def readings_command(
 
     pantocheck readings run.csv
     """
-    case, outcome = _open_subject(subject, changed or [], open_catalogue(folders or ()))
+    simulate = ReferenceSimulator().run_unrefined
+    case, outcome = open_subject(subject, changed or [], open_catalogue(folders or ()), simulate)
     result = grade_case(case, outcome, "provisional")
     if not result.quantities:
         raise InputError(f"case '{case.id}'", result.reason or "gives no value", "Give a record with a contact force.")
@@ -87,13 +88,15 @@ def readings_command(
     )
 
 
-def _open_subject(subject: str, changed: list[str], catalogue: Catalogue) -> tuple[Case, Outcome]:
-    """Case, and the run of the reference simulator or the record to be graded."""
+def open_subject(
+    subject: str, changed: list[str], catalogue: Catalogue, simulate: Callable[[Case], Outcome]
+) -> tuple[Case, Outcome]:
+    """Case, and its simulation or the record to be graded."""
     path = Path(subject)
     if not path.is_file() or (path.suffix == ".toml" and "schema" not in read_toml(path, "file")):
         case = choose_train_case(subject, parse_changes(changed), catalogue)
         with follow_steps("simulation"):
-            return case, ReferenceSimulator().run_unrefined(case)
+            return case, simulate(case)
     name = open_record(path).case
     if name is None or (entry := catalogue.find_id(name)) is None:
         found = "names no case" if name is None else f"names the case {name}, which is not at hand"

@@ -1,0 +1,185 @@
+"""Moving picture of the passage of a case, simulated once more: it is coded within a bound of its size."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_file import Discretisation
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import LineShape
+from pantocheck.conformance.line.line_shape import LineView
+from pantocheck.conformance.quantities.bands import EXTENDED_BAND
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.results.motion_format import (
+    MovingPantograph,
+    MovingWire,
+    PassageMotion,
+    code_field,
+)
+from pantocheck.conformance.runs.case_run import build_passage, integrate_passage
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.passage import FrameRequest, Frames
+
+FRAMES_PER_S = 100.0
+"""Frames per second of the simulation: five in a period of 20 Hz."""
+
+SMALLEST_SPACING_M = 0.45
+"""Smallest distance of two stations of a frame."""
+
+MOST_LETTERS = 400_000
+"""Largest size of a coded picture."""
+
+FORMS = ((0.1, 1, 2), (0.2, 1, 2), (0.5, 1, 2), (0.5, 1, 3), (1.0, 1, 3), (1.0, 1, 4), (1.0, 2, 4), (1.0, 2, 8))
+"""Step of the rises [mm], and the frames and stations of which one is kept: the first form that is small enough."""
+
+BAND_RATE_HZ = 250.0
+"""Least rate of the part of the force in the extended band."""
+
+
+Samples = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """Drawn part of a passage."""
+
+    wires: tuple[tuple[int, int], ...]
+    """Curve of the shape of the line, and row of the mesh, of each wire."""
+    ends: tuple[tuple[float, float], ...]
+    """Ends of each wire [m]."""
+    request: FrameRequest
+
+
+def film_passage(
+    case: Case,
+    line: DiscretisedLine,
+    shape: LineShape,
+    discretisation: Discretisation,
+    record: Record,
+    uplift_forces: tuple[float, ...],
+) -> PassageMotion | None:
+    """Moving picture of a passage while the train is on the drawn line.
+
+    Args:
+        case: Case with a speed.
+        line: Line of the case, discretised with the element length of `discretisation`.
+        shape: Shape of the line at rest.
+        discretisation: Element length and time step.
+        record: Record of the passage.
+        uplift_forces: Uplift force of every pantograph [N].
+
+    Returns:
+        Picture; None if another program moves a pantograph, or if no form is small enough.
+    """
+    passage = build_passage(case, line, discretisation, uplift_forces)
+    stretch = _choose_stretch(case, line, shape, passage.time_step, round(passage.duration / passage.time_step))
+    if case.fmus or not stretch.request.steps:
+        return None
+    steps = stretch.request.steps
+    frames = integrate_passage(line, replace(passage, frames=stretch.request, watched=())).frames
+    if frames is None:
+        return None
+    signals, at = RecordSignals(record, case.file.filter).pantographs, np.array(steps) - 1
+    for form in FORMS:
+        motion = _code_motion(case, line, stretch, frames, signals, record, at, form)
+        if len(motion.model_dump_json()) <= MOST_LETTERS:
+            return motion
+    return None
+
+
+def _choose_stretch(case: Case, line: DiscretisedLine, shape: LineShape, time_step: float, steps: int) -> _Stretch:
+    """Drawn wires and stations, and the steps during which a pantograph is in the analysis section or near it."""
+    first, last = shape.supports_m[0], shape.supports_m[-1]
+    views = [(wire, x) for wire, x, _ in LineView(line, "z", first, last).wires() if x.size > 1]
+    position = line.mesh.position
+    inside = np.flatnonzero((position >= first - SMALLEST_SPACING_M) & (position <= last + SMALLEST_SPACING_M))
+    kept = [int(inside[0])]
+    for station in inside[1:]:
+        if position[station] - position[kept[-1]] >= SMALLEST_SPACING_M:
+            kept.append(int(station))
+    (start, end), margin = case.analysis_section, case.line.geometry.longest_span / 2
+    begin = max((start - margin - max(case.start_positions)) / case.speed, 0.0)
+    finish = (end + margin - min(case.start_positions)) / case.speed
+    every = max(1, round(1 / (FRAMES_PER_S * time_step)))
+    chosen = range(max(round(begin / time_step), 1), min(round(finish / time_step), steps) + 1, every)
+    rows = [line.mesh.row_of[wire.name, "z"] for wire, _ in views]
+    request = FrameRequest(tuple(chosen), tuple(rows), tuple(kept))
+    ends = tuple((float(x[0]), float(x[-1])) for _, x in views)
+    return _Stretch(tuple(enumerate(rows)), ends, request)
+
+
+def _code_motion(
+    case: Case,
+    line: DiscretisedLine,
+    stretch: _Stretch,
+    frames: Frames,
+    signals: dict[int, PantographSignals],
+    record: Record,
+    at: Samples,
+    form: tuple[float, int, int],
+) -> PassageMotion:
+    """Code a picture in one form; `at` are the samples of the record at the frames."""
+    step_mm, nth_frame, nth_station = form
+    x = line.mesh.position[list(stretch.request.stations)]
+    wires, errors = [], []
+    for (curve, _), (start, end), rise in zip(
+        stretch.wires, stretch.ends, np.moveaxis(frames.displacement, 1, 0), strict=True
+    ):
+        inside = np.flatnonzero((x >= start - 1e-6) & (x <= end + 1e-6))
+        chosen = np.union1d(inside[::nth_station], inside[-1:])
+        field = code_field(1e3 * rise[::nth_frame, chosen], step_mm)
+        wires.append(MovingWire(curve=curve, x_m=[round(float(p), 3) for p in x[chosen]], rise_mm=field))
+        along = np.array([np.interp(x[inside], x[chosen], row) for row in field.decode()])
+        errors.append(np.nanmax(np.abs(along - 1e3 * rise[::nth_frame, inside]), initial=0.0))
+    dropper = np.flatnonzero(line.connectors.unilateral)
+    place = line.mesh.position[line.connectors.station[dropper]]
+    dropper = dropper[(place >= x[0]) & (place <= x[-1])]
+    slack = (frames.tension[::nth_frame, dropper] == 0).astype(np.float64)
+    time = record.time[at]
+    return PassageMotion(
+        start_s=round(float(time[0]), 6),
+        step_s=round(float(nth_frame * (time[1] - time[0])), 9),
+        speed_m_s=case.speed,
+        wires=wires,
+        dropper_m=[round(float(p), 2) for p in line.mesh.position[line.connectors.station[dropper]]],
+        slack=code_field(slack, 1.0) if dropper.size else None,
+        pantographs=[
+            _code_pantograph(case, number, part, record, at[::nth_frame], frames.unknowns[::nth_frame, number - 1])
+            for number, part in signals.items()
+        ],
+        error_mm=float(f"{max(errors):.2g}"),
+    )
+
+
+def _code_pantograph(
+    case: Case, number: int, signals: PantographSignals, record: Record, at: Samples, unknowns: RealArray
+) -> MovingPantograph:
+    """Masses and forces of a pantograph at the samples of the record of the frames."""
+    chain, row = case.pantographs[number - 1].chain, number - 1
+    head = None if record.contact_height is None else record.contact_height[row, at][:, None]
+    names: Sequence[str] = ()
+    heights = head if head is not None else unknowns[:, :1]
+    if chain is not None:
+        names = chain.names or [f"mass {n}" for n, _ in enumerate(chain.masses_kg, 1)]
+        heights = unknowns[:, : len(chain.masses_kg)]
+    try:
+        band = signals.band_part(EXTENDED_BAND.low, EXTENDED_BAND.high)
+    except QuantityUnavailable:
+        band = np.zeros(0)
+    nth = max(1, int(record.rate / BAND_RATE_HZ))
+    first = int(np.searchsorted(record.position[row], record.evaluated[0]))
+    return MovingPantograph(
+        start_m=round(float(record.position[row, at[0]]), 4),
+        masses=list(names),
+        height_mm=code_field(1e3 * heights, 0.1),
+        force_N=code_field(signals.force.graded[at][:, None], 0.05),
+        band_N=code_field(band[::nth, None], 0.01) if band.size else None,
+        band_start_s=round(float(record.time[first]), 6),
+        band_step_s=round(nth / record.rate, 9),
+    )
