@@ -12,6 +12,7 @@ from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.texts import BIDIRECTIONAL, TEMPLATES, UNSHOWABLE, is_control
 from pantocheck.conformance.quantities.limit_text import ROUNDED_DIGITS, format_graded, format_rounded, format_stated
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results.motion_format import CodedField
 
 Content = TypeVar("Content")
 
@@ -37,8 +38,10 @@ def clean_tree(value: Content) -> Content:
 
 
 def change_texts(value: Content, change: Callable[[str], str]) -> Content:
-    """Models, dictionaries and lists with every text, keys included, changed by a function."""
+    """Models, dictionaries and lists with every text, keys included, changed by a function; no coded number changes."""
     changed: Any = value
+    if isinstance(value, CodedField):
+        return value
     if isinstance(value, str):
         changed = change(value)
     elif isinstance(value, BaseModel):

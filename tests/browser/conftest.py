@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from helpers.example_identification import build_example_line
+from helpers.example_passage import with_passage
 from helpers.example_results import chart, example, with_hostile_text, with_measured_run, with_reference
 from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.pages.certificate_page import build_certificate
@@ -80,6 +81,7 @@ def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     documents = {
         "certificate": build_certificate(Results.model_validate(example())),
         "measured": build_certificate(Results.model_validate(with_measured_run())),
+        "passage": build_certificate(Results.model_validate(with_passage())),
         "reference": build_certificate(Results.model_validate(with_reference())),
         "hostile": build_certificate(Results.model_validate(with_hostile_text())),
         "identification": build_identification_document([IdentifiedLine.model_validate(build_example_line())]),

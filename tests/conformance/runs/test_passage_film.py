@@ -38,7 +38,8 @@ def test_picture_agrees_with_the_record(case_250: Case) -> None:
     assert 0 < motion.error_mm < 5
     [contact] = [wire for wire in motion.wires if shape.side.curves[wire.curve].kind == "contact_wire"]
     rise = contact.rise_mm.decode()
-    assert record.support_position is not None and record.support_uplift is not None
+    assert record.support_position is not None
+    assert record.support_uplift is not None
     for place, uplift in zip(record.support_position, 1e3 * record.support_uplift, strict=True):
         drawn = np.array([np.interp(place, contact.x_m, row) for row in rise])
         assert_allclose(drawn, uplift[at], atol=motion.error_mm + 0.05)

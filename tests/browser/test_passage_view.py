@@ -1,0 +1,112 @@
+"""The moving picture in a browser: instants, keys, playing, dragging, less motion, and the drawn wire."""
+
+import re
+from typing import Any
+
+import pytest
+
+from helpers.example_passage import FRAMES, LOWEST_FRAME, STEP_S
+
+pytestmark = pytest.mark.thorough
+
+FIGURE = "#case-1-passage"
+START_S = 2.0
+LAST_S = START_S + (FRAMES - 1) * STEP_S
+
+
+def read_time(page: Any) -> float:
+    found = re.match(r"t = ([\d.]+) s", page.locator(f"{FIGURE} .readout").inner_text())
+    assert found is not None
+    return float(found[1])
+
+
+def open_at(open_page: Any, address: str = "", **options: Any) -> Any:
+    page = open_page("passage", **options)
+    page.evaluate("address => { location.hash = address; }", address)
+    page.locator(FIGURE).scroll_into_view_if_needed()
+    page.locator(f"{FIGURE} .readout", has_text="t = ").wait_for()
+    return page
+
+
+def find_wire(page: Any) -> list[float]:
+    """Highest dark pixel of the side view below its middle, at each hundredth of the width: the contact wire [px]."""
+    script = """figure => {
+      const canvas = document.querySelector(`${figure} canvas`);
+      const ratio = canvas.width / canvas.clientWidth;
+      const [top, rows] = [Math.round(80 * ratio), Math.round(110 * ratio)];
+      const { data } = canvas.getContext("2d").getImageData(0, top, canvas.width, rows);
+      const isDark = (x, y) => data[4 * (y * canvas.width + x) + 3] > 200 && data[4 * (y * canvas.width + x)] < 90;
+      return Array.from({ length: 100 }, (_, n) => {
+        const x = Math.round((50 + (n / 100) * (canvas.clientWidth - 58)) * ratio);
+        for (let y = 0; y < rows; y++) if (isDark(x, y)) return 80 + y / ratio;
+        return NaN;
+      });
+    }"""
+    return list(map(float, page.evaluate(script, FIGURE)))
+
+
+def test_address_names_an_instant_and_steps_move_by_frames(open_page: Any) -> None:
+    page = open_at(open_page, "t=2.503")
+    assert read_time(page) == pytest.approx(2.503, abs=6e-4)
+    assert "slack droppers: 1" in page.locator(f"{FIGURE} .readout").inner_text()
+    area = page.locator(f"{FIGURE} .scene")
+    area.press("ArrowRight")
+    assert read_time(page) == pytest.approx(2.51)
+    area.press("Shift+ArrowLeft")
+    assert read_time(page) == pytest.approx(2.41)
+    assert "slack droppers: 0" in page.locator(f"{FIGURE} [role=status]").last.text_content()
+    area.press("End")
+    assert read_time(page) == pytest.approx(LAST_S)
+    area.press("Home")
+    assert read_time(page) == pytest.approx(START_S)
+    page.get_by_role("button", name="Link to this instant").click()
+    assert page.evaluate("location.hash") == "#t=2.000"
+
+
+def test_smallest_force_is_found(open_page: Any) -> None:
+    page = open_at(open_page)
+    page.get_by_role("button", name="Smallest force").click()
+    assert read_time(page) == pytest.approx(START_S + LOWEST_FRAME * STEP_S)
+    assert ", 40 N" in page.locator(f"{FIGURE} .readout").inner_text()
+
+
+def test_playing_and_dragging_change_the_instant(open_page: Any) -> None:
+    page = open_at(open_page)
+    area = page.locator(f"{FIGURE} .scene")
+    area.press("Space")
+    page.wait_for_timeout(600)
+    area.press("Space")
+    stopped = read_time(page)
+    assert START_S < stopped < LAST_S
+    page.wait_for_timeout(200)
+    assert read_time(page) == stopped
+    box = area.bounding_box()
+    page.mouse.click(box["x"] + 50 + 0.5 * (box["width"] - 58), box["y"] + 330)
+    assert read_time(page) == pytest.approx((START_S + LAST_S) / 2, abs=0.01)
+
+
+def test_less_motion_shows_single_pictures(open_page: Any) -> None:
+    """Two pictures in a second at a tenth of the speed: steps of 0.05 s."""
+    page = open_at(open_page, reduced_motion="reduce")
+    assert read_time(page) == START_S
+    page.locator(f"{FIGURE} .scene").press("Space")
+    page.wait_for_timeout(250)
+    assert read_time(page) == START_S
+    page.wait_for_timeout(600)
+    assert read_time(page) > START_S + 0.04
+
+
+def test_drawn_wire_follows_its_rise(open_page: Any) -> None:
+    """The bump of 50 mm is 5 times enlarged; the room of the heights is that of the scene. Lines are 2.4 px wide."""
+    heights = find_wire(open_at(open_page, "t=2.5"))
+    room = 230 - 44 - 30 * 2
+    rest = 6 + 26 + room
+    assert heights[10] == pytest.approx(rest, abs=2)
+    assert min(heights[15:85]) == pytest.approx(rest - 5 * 0.05 * room / 1.2, abs=3)
+
+
+@pytest.mark.parametrize("width", [390, 768, 1440])
+def test_picture_fits_the_width(open_page: Any, width: int) -> None:
+    page = open_at(open_page, "t=2.5", width=width)
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    assert page.locator(f"{FIGURE} canvas").bounding_box()["width"] <= width
