@@ -20,10 +20,8 @@ from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart
 MISSING = -(2**15)
 """Number of a missing value."""
 
-MOST_VALUES = 8_000_000
+MOST_CODED_VALUES = 8_000_000
 """Largest number of values of a field: 4000 frames of 2000 columns."""
-
-Positive = Annotated[FiniteNumber, Field(gt=0)]
 
 
 class CodedField(ResultsPart):
@@ -31,9 +29,9 @@ class CodedField(ResultsPart):
 
     frames: Annotated[int, Field(ge=1)]
     columns: Annotated[int, Field(ge=1)]
-    step: Positive
+    step: Annotated[FiniteNumber, Field(gt=0)]
     """Difference of two neighbouring numbers, in the unit of the values; the error of rounding is half of it."""
-    data: Annotated[str, Field(max_length=4 * MOST_VALUES)]
+    data: Annotated[str, Field(max_length=4 * MOST_CODED_VALUES)]
 
     def decode(self) -> RealArray:
         """Values, (frames, columns); NaN: missing.
@@ -42,8 +40,10 @@ class CodedField(ResultsPart):
             ValueError: The data have another size, or cannot be unpacked.
         """
         size = 2 * self.frames * self.columns
-        if size > 2 * MOST_VALUES:
-            raise ValueError(f"a field of {self.frames} x {self.columns} values, at most {MOST_VALUES} are accepted")
+        if size > 2 * MOST_CODED_VALUES:
+            raise ValueError(
+                f"a field of {self.frames} x {self.columns} values, at most {MOST_CODED_VALUES} are accepted"
+            )
         unpacker = zlib.decompressobj()
         try:
             halves = unpacker.decompress(b64decode(self.data, validate=True), size + 1)
@@ -106,16 +106,16 @@ class MovingPantograph(ResultsPart):
     band_N: CodedField | None
     """Part of the force in the extended band over the analysis section, one column; null: not observable."""
     band_start_s: FiniteNumber
-    band_step_s: Positive
+    band_step_s: Annotated[FiniteNumber, Field(gt=0)]
 
 
 class PassageMotion(ResultsPart):
     """Moving picture of a passage, an illustration: no value and no verdict follows from it."""
 
     start_s: FiniteNumber
-    step_s: Positive
+    step_s: Annotated[FiniteNumber, Field(gt=0)]
     """Time of the first frame after the start of the run, and time between two frames."""
-    speed_m_s: Positive
+    speed_m_s: Annotated[FiniteNumber, Field(gt=0)]
     wires: list[MovingWire]
     dropper_m: list[FiniteNumber]
     slack: CodedField | None

@@ -35,7 +35,7 @@ SMALLEST_SPACING_M = 0.45
 MOST_LETTERS = 400_000
 """Largest size of a coded picture."""
 
-FORMS = ((0.1, 1, 2), (0.2, 1, 2), (0.5, 1, 2), (0.5, 1, 3), (1.0, 1, 3), (1.0, 1, 4), (1.0, 2, 4), (1.0, 2, 8))
+CODED_FORMS = ((0.1, 1, 2), (0.2, 1, 2), (0.5, 1, 2), (0.5, 1, 3), (1.0, 1, 3), (1.0, 1, 4), (1.0, 2, 4), (1.0, 2, 8))
 """Step of the rises [mm], and the frames and stations of which one is kept: the first form that is small enough."""
 
 BAND_RATE_HZ = 250.0
@@ -86,7 +86,7 @@ def film_passage(
     if frames is None:
         return None
     signals, at = RecordSignals(record, case.file.filter).pantographs, np.array(steps) - 1
-    for form in FORMS:
+    for form in CODED_FORMS:
         motion = _code_motion(case, line, stretch, frames, signals, record, at, form)
         if len(motion.model_dump_json()) <= MOST_LETTERS:
             return motion
