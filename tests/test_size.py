@@ -14,24 +14,23 @@ CODE = {".py", ".c", ".h", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
-    ("model", "conformance"): 88_040,
-    ("templates",): 3_930,
+    ("model", "conformance"): 88_650,
+    ("templates",): 4_600,
     ("verification",): 20_100,
-    ("tests",): 58_990,
+    ("tests",): 59_250,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
 The core of the time steps in C (1,780 lines of the product with its choice), pantographs as FMUs (1,650), records of
-several files with clocks of their own (1,460), heads in the checks of records and the fit of transfer functions (490),
-the verifier in the language of a document and the steps of its dossier (270 lines of templates) raised them before. Runs
-of measured lines (1,710 lines of the product), a line as an FMU (810) and the step with full matrices as a kernel (460,
-which left the tests) have raised them last.
+several files with clocks of their own (1,460) and heads in the checks of records (490) raised them before. Runs of
+measured lines (1,710 lines of the product), a line as an FMU (810), the moving picture of a passage (620, and 660 of
+templates) and the step with full matrices as a kernel (460, which left the tests) have raised them last.
 A lower number replaces these whenever it is reached. A subject that must add lines raises its number in the same
 commit, states the reason there, and adds at most 1,800 lines to the product, 1,500 to the tests and 900 to
 `verification/`.
 """
 
-MOST_WORDS = 79_100
+MOST_WORDS = 79_500
 """Largest number of words in the pages of `docs/`."""
 
 
