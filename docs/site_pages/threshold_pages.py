@@ -69,4 +69,11 @@ def _find_reason(following: list[ast.stmt]) -> str:
 
 def _describe(threshold: Threshold) -> tuple[str, str, str]:
     values = threshold.value if isinstance(threshold.value, tuple) else (threshold.value,)
-    return f"`{threshold.name}`", ", ".join(f"{value:,.10g}" for value in values), escape_text(threshold.reason)
+    return f"`{threshold.name}`", ", ".join(_format_value(value) for value in values), escape_text(threshold.reason)
+
+
+def _format_value(value: float | tuple[float, ...]) -> str:
+    """Number of a threshold, or several that belong together in brackets."""
+    if isinstance(value, tuple):
+        return f"({', '.join(_format_value(part) for part in value)})"
+    return f"{value:,.10g}"

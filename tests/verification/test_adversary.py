@@ -82,7 +82,7 @@ def test_steps_change_any_field_and_any_signal(tree: Tree, share: float) -> None
         except (ValueError, TypeError, KeyError, ArithmeticError):
             continue
         changed |= {field for field, path in fields.items() if _differs(forged, tree, path)}
-    assert len(changed) > 40 * share
+    assert len(changed) >= 40 * share
     signals = list(list_signals(case_of(tree)["signals"]))
     assert {path[-1] for path in signals} >= {"position_m", "force_N", "contact_height_m", "uplift_m", "time_s"}
     moved = set()

@@ -35,7 +35,7 @@ for name in {sorted(EXTRA_OF_PACKAGE)}:
 NEEDS_AN_EXTRA = (
     *("conformance.documents.pdf_check", "conformance.documents.pdf_check"),
     *("conformance.core.hdf5_table", "conformance.core.matlab_table"),
-    *("conformance.core.uff_table", "conformance.core.uff_table"),
+    *("conformance.core.uff_table", "conformance.core.parquet_table"),
 )
 """Readers and writers that import an optional package on loading."""
 

