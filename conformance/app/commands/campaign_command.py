@@ -1,10 +1,10 @@
 """`pantocheck campaign`: many runs with varied inputs, which can be interrupted and resumed."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import RenderableType
@@ -18,7 +18,12 @@ from pantocheck.conformance.app.commands.progress_display import show_line
 from pantocheck.conformance.campaigns.campaign_columns import choose_values
 from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress
 from pantocheck.conformance.campaigns.campaign_evaluation import RunPair, evaluate_campaign, pair_runs
-from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution, check_variation, parse_variation
+from pantocheck.conformance.campaigns.campaign_file import (
+    CampaignFile,
+    Execution,
+    check_variation,
+    parse_variation,
+)
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, find_campaign_file, prepare_campaign
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table, write_parquet
@@ -106,11 +111,8 @@ def campaign_command(
 
     pantocheck campaign en50318-2018/ac-simple/320-twin --vary speed_km_h=200:350:10 --out map
     """
-    variations = [parse_variation(text) for text in vary or ()]
-    for variation in variations:
-        check_variation(variation)
     design: dict[str, object] = {
-        "vary": variations or None,
+        "vary": _parse_variations(vary or ()) or None,
         "set": changed,
         "pantograph": [str(Path(name).resolve()) for name in pantograph or ()] or None,
         "systems": system,
@@ -131,22 +133,11 @@ def campaign_command(
     if compare is not None:
         with read_store(compare):
             pass  # a wrong folder is refused before the first run
-    interrupted = 0
     with open_store(out, prepared.identity) as store:
         if retry_failed:
             store.forget_failed()
-        try:
-            with choose_executor(prepared.file.execution) as executor:
-                typer.echo(f"Runs in {executor.description}.", err=True)
-                with report_campaign() as report:
-                    ending = prepared.drive(store, executor, report)
-        except KeyboardInterrupt as interruption:
-            ending, interrupted = "interrupted", interruption_exit_code(interruption)
-        pairs: list[RunPair] = []
-        if compare is not None:
-            with read_store(compare) as other:
-                pairs = pair_runs(store, other, choose_values(store, prepared.limits))
-        results = evaluate_campaign(prepared, store, ending, pairs)
+        ending, interrupted = _drive(prepared, store)
+        results = evaluate_campaign(prepared, store, ending, _pair_with(compare, prepared, store))
         files = _write_results(results, store, out)
     counts = f"{results.finished} of {results.total} runs finished, {results.failed} failed"
     exit_code = interrupted or int(results.finished < results.total or results.failed > 0)
@@ -158,6 +149,14 @@ def campaign_command(
         exit_code=exit_code,
         remarks=remark_missing_formats(),
     )
+
+
+def _parse_variations(texts: Sequence[str]) -> list[dict[str, Any]]:
+    """Variations of the command line."""
+    variations = [parse_variation(text) for text in texts]
+    for variation in variations:
+        check_variation(variation)
+    return variations
 
 
 def _list_reasons(results: CampaignResults) -> list[RenderableType]:
@@ -190,6 +189,25 @@ def _prepare(
     return prepare_campaign(
         file.model_copy(update={"execution": changed, "case_folders": (*file.case_folders, *folders)}), path.parent
     )
+
+
+def _drive(prepared: PreparedCampaign, store: CampaignStore) -> tuple[CampaignEnding, int]:
+    """Run the open runs of a campaign; how it ended, and the exit code of an interruption, else 0."""
+    try:
+        with choose_executor(prepared.file.execution) as executor:
+            typer.echo(f"Runs in {executor.description}.", err=True)
+            with report_campaign() as report:
+                return prepared.drive(store, executor, report), 0
+    except KeyboardInterrupt as interruption:
+        return "interrupted", interruption_exit_code(interruption)
+
+
+def _pair_with(folder: Path | None, prepared: PreparedCampaign, store: CampaignStore) -> list[RunPair]:
+    """Runs of a campaign and of that in another folder with equal inputs; none without a folder."""
+    if folder is None:
+        return []
+    with read_store(folder) as other:
+        return pair_runs(store, other, choose_values(store, prepared.limits))
 
 
 def _write_results(results: CampaignResults, store: CampaignStore, folder: Path) -> list[Path]:
