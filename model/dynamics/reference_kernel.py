@@ -49,7 +49,7 @@ STEPS_PER_REPORT = 20
 """Number of steps between two reports of progress."""
 
 
-def without_connectors(line: DiscretisedLine) -> DiscretisedLine:
+def remove_connectors(line: DiscretisedLine) -> DiscretisedLine:
     """Remove the stiffness and damping of all connectors from a line."""
     zeros = np.zeros_like(line.connectors.stiffness)
     return replace(line, connectors=line.connectors._replace(stiffness=zeros, damping=zeros))
@@ -124,7 +124,7 @@ class FullSystem:
     """
 
     def __init__(self, line: DiscretisedLine, passage: Passage) -> None:
-        matrices, dt = assemble_matrices(without_connectors(line)), passage.time_step
+        matrices, dt = assemble_matrices(remove_connectors(line)), passage.time_step
         self.line, self.passage, self.free = line, passage, matrices.free
         self.wires = line.catenary.contact_wires
         self.rest = line.state.deflection.ravel()[bandwidth_order(line)]

@@ -15,7 +15,7 @@ from pantocheck.model.dynamics.core_choice import choose_core
 from pantocheck.model.dynamics.foreign_pantograph import build_interface, couple_steps, start_interfaces
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest
-from pantocheck.model.dynamics.passage import ForeignPantograph, FrameRequest, Frames, History, Passage
+from pantocheck.model.dynamics.passage import ForeignPantograph, Frames, History, Passage
 from pantocheck.model.dynamics.recording import FrameRecorder, allocate_recording, simulate_steps
 from pantocheck.model.dynamics.reference_kernel import simulate_full_steps
 from pantocheck.model.dynamics.train import Train, build_train
@@ -81,7 +81,7 @@ def simulate_passage(
     watched = recording.motion.transpose(1, 0, 2).copy()
     stations = np.array([place for _, place in passage.watched])
     watched[find_unknown(window, passage, stations, time)] = np.nan
-    frames = None if recorder is None else _hide_unknown(recorder.build_frames(), line, window, passage, time)
+    frames = None if recorder is None else _hide_unknown(recorder, line, window, passage, time)
     return History(
         time=time,
         position=position,
@@ -94,9 +94,11 @@ def simulate_passage(
     )
 
 
-def _hide_unknown(frames: Frames, line: DiscretisedLine, window: WindowArrays, passage: Passage, time: Array) -> Frames:
-    """Frames with NaN where the motion is unknown."""
-    request = passage.frames or FrameRequest((), (), ())
+def _hide_unknown(
+    recorder: FrameRecorder, line: DiscretisedLine, window: WindowArrays, passage: Passage, time: Array
+) -> Frames:
+    """Recorded frames, with NaN where the motion is unknown."""
+    request, frames = recorder.request, recorder.build_frames()
     # The first cut may lie between two frames, so that all steps are searched.
     unknown = find_unknown(window, passage, line.mesh.position[list(request.stations)], time)
     hidden = unknown[:, np.array(request.steps) - 1].T[:, None]

@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 
 from helpers.lines import Array
 from pantocheck.model import DiscretisedLine, Passage
-from pantocheck.model.dynamics.reference_kernel import without_connectors
+from pantocheck.model.dynamics.reference_kernel import remove_connectors
 from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,
@@ -32,7 +32,7 @@ def contact_force(line: DiscretisedLine, passage: Passage) -> Array:
         Contact force, (T,) [N].
     """
     (model,) = passage.pantographs
-    matrices = assemble_matrices(without_connectors(line))
+    matrices = assemble_matrices(remove_connectors(line))
     free, dt, connectors = matrices.free, passage.time_step, line.connectors
     row, place = line.contact_rows[0], bandwidth_order(line)[matrices.free]
     rest = line.state.deflection.ravel()[bandwidth_order(line)]

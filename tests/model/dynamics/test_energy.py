@@ -12,7 +12,7 @@ from pantocheck.model.discretisation.discretised_line import DiscretisedLine, di
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import Motion, build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.reference_kernel import without_connectors
+from pantocheck.model.dynamics.reference_kernel import remove_connectors
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.statics.assembly import (
     assemble_matrices,
@@ -35,7 +35,7 @@ def free_decay(line: DiscretisedLine, time_step: float, steps: int) -> tuple[Arr
     Wires and lumped springs store q'Kq / 2, a held stretch k (a'q)^2 / 2, a dropper at tension N stores N^2 / 2k. The
     work of its preload is potential energy, too: it balances the weights.
     """
-    rows, load = without_connectors(line), point_load(line, 0, 20.0)
+    rows, load = remove_connectors(line), point_load(line, 0, 20.0)
     matrices, mass = assemble_matrices(rows), correct_mass(line, time_step)
     place, bars = bandwidth_order(line)[matrices.free], csc_array(connector_directions(line)[matrices.free])
     stretches = csc_array(stretch_directions(line)[matrices.free])

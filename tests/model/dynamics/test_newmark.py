@@ -56,7 +56,7 @@ def test_step_equals_the_plain_implementation_with_other_contact_laws(changes: d
     assert max(difference.values()) < 1e-8, difference
 
 
-def test_step_equals_the_plain_implementation_without_connectors() -> None:
+def test_step_equals_the_plain_implementation_remove_connectors() -> None:
     """A bare wire under one pantograph: the arrays of the connectors are empty."""
     passage = Passage((PANTOGRAPH_2002,), (10.0,), 60.0, 0.2, 1e-3)
     difference, _, _, _ = largest_differences(discretise(bare_wire(40.0), 1.0), passage, 200, drop=0.5)

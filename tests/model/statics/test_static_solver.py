@@ -9,14 +9,14 @@ from scipy.optimize import nnls
 
 from helpers.lines import Array, simple_line
 from pantocheck.model.discretisation.discretised_line import discretise
-from pantocheck.model.dynamics.reference_kernel import without_connectors
+from pantocheck.model.dynamics.reference_kernel import remove_connectors
 from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, connector_directions, point_load
 from pantocheck.model.statics.static_solver import StaticSolver
 from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses, invert_blocks
 
 LINE = discretise(simple_line(spans=3), 1.0)
 STATICS = StaticSolver(LINE)
-ROWS = assemble_matrices(without_connectors(LINE))
+ROWS = assemble_matrices(remove_connectors(LINE))
 FREE, COMPLIANCE = ROWS.free, np.linalg.inv(ROWS.stiffness.toarray())
 BARS = connector_directions(LINE)[FREE].toarray()
 
