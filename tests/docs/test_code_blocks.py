@@ -154,6 +154,12 @@ def test_page_runs_as_written(page_run: ModuleType, unrun_blocks: ModuleType, na
         pytest.skip("the blocks of the pages are for bash")
     run = page_run.start_page_run(tmp_path / "clone", whole=False)
     PREPARATIONS.get(name, lambda _: None)(run)
-    for block in read_blocks(DOCS / f"{name}.md"):
-        if unrun_blocks.find_reason(block) is None:
+    chosen = [block for block in read_blocks(DOCS / f"{name}.md") if unrun_blocks.find_reason(block) is None]
+    faults = []
+    for block in chosen:
+        try:
             run.take(block)
+        except page_run.BlockFault as fault:
+            faults.append(str(fault))
+    assert faults == []
+    assert any(block.runs for block in chosen)
