@@ -30,6 +30,8 @@ class Program:
     state: tuple[Array, Array] = field(init=False)
 
     def __post_init__(self) -> None:
+        model, h = self.pantograph, self.time_step / self.substeps
+        self.inverse = np.linalg.inv(model.mass + h / 2 * model.damping + h**2 / 4 * model.stiffness)
         self.restart()
 
     def restart(self) -> None:
@@ -44,9 +46,8 @@ class Program:
         model, h = self.pantograph, self.time_step / self.substeps
         z, v = self.state
         load = model.force - self.sign * model.strip_shapes.T @ force
-        matrix = model.mass + h / 2 * model.damping + h**2 / 4 * model.stiffness
         for _ in range(self.substeps):
-            mean = np.linalg.solve(matrix, model.mass @ v + h / 2 * (load - model.stiffness @ z))
+            mean = self.inverse @ (model.mass @ v + h / 2 * (load - model.stiffness @ z))
             z, v = z + h * mean, 2 * mean - v
         self.trial = (z, v)
         return [*self.heights, self.heads(z)][-1 - self.delay]
@@ -60,7 +61,7 @@ def short_line() -> DiscretisedLine:
     return discretise(simple_line(spans=4, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED), 1.0)
 
 
-PASSAGE = Passage((PANTOGRAPH_2002, THREE_MASSES), (30.0, 12.0), 60.0, 1.5, 1e-3)
+PASSAGE = Passage((PANTOGRAPH_2002, THREE_MASSES), (30.0, 12.0), 60.0, 0.8, 1e-3)
 TWO_STRIPS = mount_strips(
     PANTOGRAPH_2002, (MountedStrip(0.3, 3.0, 5e3, 20.0), MountedStrip(-0.28, 3.0, 6e3, 15.0)), Rotation(0.8, 40.0, 3.0)
 )
