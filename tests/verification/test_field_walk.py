@@ -21,7 +21,7 @@ from verification.attacks.field_walk import (
     try_change,
 )
 
-SAMPLE = 4
+SAMPLE = 6
 """Fields that are drawn of the listed ones, and as many of the others."""
 MEANS = {"rerun", "record", "signature", "none"}
 """Means that finds a change; none: no verdict rises by it."""
@@ -51,11 +51,14 @@ def test_sampled_fields_are_found_or_listed(tree: Tree, changes: Changes) -> Non
     """One change of a field that is not listed; of a listed one, all changes until one is accepted."""
     assert is_accepted(tree)
     chance = random.Random(31)
+    ways: set[str] = set()
     listed, others = sorted(changes.keys() & LISTED.keys()), sorted(changes.keys() - LISTED.keys())
     for field in (*chance.sample(listed, SAMPLE), *chance.sample(others, SAMPLE)):
         tried = changes[field] if field in LISTED else [chance.choice(changes[field])]
         accepted = find_accepted(tree, tried)
         assert (accepted is not None) == (field in LISTED), accepted or f"{field} is listed, but every change is found"
+        ways.update(() if accepted is None else try_change(tree, accepted))
+    assert ways == {"alone", "regraded"}
 
 
 @pytest.mark.thorough
