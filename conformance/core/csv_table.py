@@ -199,10 +199,9 @@ def _find_mark(text: str, layout: TextLayout, where: str) -> DecimalSign | None:
 
 def _fill_empty(line: str, separator: str) -> str:
     """Line with tabs between columns and `nan` in empty cells."""
-    cells = line.split(separator)
-    if all(cells) and not line.isspace():
-        return line if separator == "\t" else "\t".join(cells)
-    return "\t".join(cell if cell.strip() else "nan" for cell in cells)
+    if not line.startswith(separator) and not line.endswith(separator) and 2 * separator not in line:
+        return line.replace(separator, "\t")
+    return "\t".join(cell if cell.strip() else "nan" for cell in line.split(separator))
 
 
 def _width_error(place: str, found: int, width: int) -> InputError:

@@ -111,7 +111,8 @@ class TextReading:
     def counts(self) -> list[tuple[int, int]]:
         """Number of numbers and of cells with content in the lower lines of each column."""
         columns = [[cells[c] for cells in self.body if cells[c]] for c in range(self.width)]
-        return [(sum(is_number(cell, self.decimal) for cell in cells), len(cells)) for cells in columns]
+        matches = _NUMBER[self.decimal].fullmatch
+        return [(len(list(filter(matches, cells))), len(cells)) for cells in columns]
 
     @cached_property
     def numeric(self) -> frozenset[int]:
@@ -247,6 +248,7 @@ class TextReading:
 
 # Layout of a text table: separator, decimal mark, head lines. A layout with two valid readings is refused.
 SEPARATORS: tuple[Separator, ...] = (";", "\t", ",", "|", " ")
+DECIMALS: tuple[DecimalSign, ...] = (".", ",")
 SEPARATOR_NAMES = {";": "semicolon", "\t": "tab", ",": "comma", "|": "bar", " ": "blanks"}
 
 
@@ -264,12 +266,11 @@ def find_text_layout(lines: list[NumberedLine], where: str, settings: TextSettin
     Raises:
         InputError: The lines are no table, or several layouts are valid; the error names the key that decides.
     """
-    separators = SEPARATORS if settings.separator is None else (settings.separator,)
-    decimals: tuple[DecimalSign, ...] = (".", ",") if settings.decimal is None else (settings.decimal,)
+    separators = _list_separators(lines) if settings.separator is None else (settings.separator,)
     readings = [
         reading
         for separator, split in ((separator, split_lines(lines, separator)) for separator in separators)
-        for decimal in decimals
+        for decimal in (_list_decimals(lines, separator) if settings.decimal is None else (settings.decimal,))
         if separator != decimal and (reading := TextReading(split, separator, decimal, settings.header_lines)).is_valid
     ]
     best = max((reading.rank for reading in readings), default=None)
@@ -282,6 +283,18 @@ def find_text_layout(lines: list[NumberedLine], where: str, settings: TextSettin
     if settings.decimal is None:
         _check_thousands(reading, where)
     return reading.build_layout(where)
+
+
+def _list_separators(lines: list[NumberedLine]) -> tuple[Separator, ...]:
+    """Separators that give different readings: those that no line has give the same single column."""
+    absent = [mark for mark in SEPARATORS[:-1] if not any(mark in text for _, text in lines)]
+    return tuple(mark for mark in SEPARATORS if mark not in absent[1:])
+
+
+def _list_decimals(lines: list[NumberedLine], separator: Separator) -> tuple[DecimalSign, ...]:
+    """Decimal marks beside a separator; one that no line has reads a part of the numbers of the other one."""
+    marks = [mark for mark in DECIMALS if mark != separator]
+    return tuple(mark for mark in marks if any(mark in text for _, text in lines)) or DECIMALS[:1]
 
 
 def _drop_equal(readings: list[TextReading]) -> list[TextReading]:
