@@ -45,6 +45,8 @@ def test_names_of_columns_need_a_head_line(tmp_path: Path) -> None:
     assert_array_equal(read(tmp_path, "a;b\n0;0\n0;0\n0;0\n0,5;1,5\n").values[-1], [0.5, 1.5])
     rest = "0;0\n" * 2000
     assert_array_equal(read(tmp_path, f"a;b\n{rest}0,5;1,5\n", 10_000).values[-1], [0.5, 1.5])
+    # One with a decimal mark above whole numbers is no name.
+    assert_array_equal(read(tmp_path, "1.5\n522\n24\n331\n").values[:, 0], [1.5, 522, 24, 331])
     # A time stamp beside numbers, a trailing separator, and a missing number.
     table = read(tmp_path, "Uhr;a;b;\n12:00:01,5;1,5;2;\n12:00:01,6;;3;\n12:00:01,7;1,7;4;\n12:00:01,8;1,8;5;\n")
     assert_array_equal(table.values[:, 1:3], [[1.5, 2], [np.nan, 3], [1.7, 4], [1.8, 5]])
