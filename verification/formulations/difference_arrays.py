@@ -192,6 +192,7 @@ def _arrays(line: Line, strands: Strands, rest: Rest, bars: list[Bar]) -> Lines:
         arm=np.array(arms if line.staggered else [], dtype=np.int64).reshape(-1, 2),
         arm_direction=arm_directions(rest) if line.staggered else np.zeros((0, 2)),
         contact=names.index(("contact", "z")),
+        lateral=names.index(("contact", "y")) if line.staggered else -1,
         excess=strands["contact", "z"].excess,
         rest=_add_irregularity(line, strands, rest),
     )

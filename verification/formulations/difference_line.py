@@ -58,6 +58,8 @@ class Lines(NamedTuple):
     """Direction of every arm (y, z), (A, 2) [-]."""
     contact: int
     """Number of the vertical strand of the contact wire."""
+    lateral: int
+    """Number of its lateral strand; -1 without stagger."""
     excess: Floats
     """Excess flexibility of the contact wire, see `difference_strands.excess_flexibility`, (4,) [m/N]."""
     rest: Floats
@@ -65,7 +67,10 @@ class Lines(NamedTuple):
 
 
 class Heads(NamedTuple):
-    """Pantographs of a train, M z'' + C z' + K z = load - contact forces; P pantographs, n unknowns, S strips."""
+    """Pantographs of a train, M z'' + C z' + K z = load - contact forces - forces of joints.
+
+    P pantographs, n unknowns, S strips, J joints; the joints are friction and stops.
+    """
 
     position: Floats
     speed: float
@@ -80,7 +85,7 @@ class Heads(NamedTuple):
     offset: Floats
     """Distance of each strip ahead of the position, (P, S) [m]."""
     shape: Floats
-    """Displacement of each strip per unknown, (P, S, n)."""
+    """Displacement of each strip per unknown and power of the lateral position of the wire, (P, S, powers, n)."""
     contact_stiffness: float
     height: Floats
     velocity: Floats
@@ -88,6 +93,10 @@ class Heads(NamedTuple):
     contact_damping: float = 0.0
     hertz: float = np.inf
     """Damper beside the contact spring [N s/m], and coefficient of Hertz's law in place of it [N/m^1.5]."""
+    joint: Floats = np.zeros((1, 0, 1))
+    """Closing of each joint per unknown, (P, J, n)."""
+    joint_law: Floats = np.zeros((1, 0, 5))
+    """Stiffness, damper, gap, lower and upper bound of each joint, (P, J, 5) [N/m, N s/m, m, N, N]."""
 
 
 # Line of the second formulation: wires, droppers, arms, supports and clamps from the case that a program receives.
@@ -99,11 +108,12 @@ CaseData = dict[str, Any]
 
 FEATURES = frozenset(
     (
-        "applied_forces", "bending_stiffness", "chain", "contact_damping", "contact_laws", "curves", "dropper_mass",
-        "droppers", "gradients", "head_pitch", "irregularity", "line_at_rest", "listed_spans", "point_masses",
-        "presag", "pushing_steady_arms", "rayleigh_damping", "several_pantographs", "single_supports", "stagger",
-        "steady_arm_dampers", "steady_arm_mass", "steady_arms", "stitch_wire", "support_dampers",
-        "surveyed_wire_heights", "two_strips", "uplift_force_tuning", "variation", "wire_height", "wire_springs",
+        "applied_forces", "bending_modes", "bending_stiffness", "chain", "contact_damping", "contact_laws", "curves",
+        "dropper_mass", "droppers", "friction", "gradients", "head_pitch", "head_roll", "irregularity", "line_at_rest",
+        "listed_spans", "point_masses", "presag", "pushing_steady_arms", "rayleigh_damping", "several_pantographs",
+        "single_supports", "stagger", "steady_arm_dampers", "steady_arm_mass", "steady_arms", "stitch_wire", "stops",
+        "support_dampers", "surveyed_wire_heights", "two_strips", "uplift_force_tuning", "variation", "wire_height",
+        "wire_springs",
     )
 )  # fmt: skip
 """Features of a case that the second formulation has."""

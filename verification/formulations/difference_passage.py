@@ -110,7 +110,9 @@ def build_heads(
         return force / stiffness + (force / hertz) ** (2 / 3)
 
     parts = [build_parts(pantograph) for pantograph in case["pantographs"]]
-    loads, heights = [], []
+    if damping and any(part.shape.shape[1] > 1 for part in parts):
+        raise ValueError("the second formulation has no contact damper below a wire that moves across a strip")
+    loads, heights, laws = [], [], []
     for pantograph, part, x, force in zip(case["pantographs"], parts, starts, uplift_forces, strict=True):
         free = nominal_height(case, model)
         if pantograph["chain"]["base_spring_unstretched"] == "working_height":
@@ -129,6 +131,7 @@ def build_heads(
         ]
         loads.append(load)
         heights.append(part.hold(load, np.array(held)))
+        laws.append(part.joint_law + np.outer(part.joint_datum * free, np.eye(5)[2]))
     return Heads(
         position=starts.copy(),
         speed=case["speed_km_h"] / 3.6,
@@ -143,12 +146,14 @@ def build_heads(
         velocity=np.zeros((starts.size, parts[0].mass.size)),
         contact_damping=damping or 0.0,
         hertz=hertz,
+        joint=np.array([part.joint for part in parts]),
+        joint_law=np.array(laws),
     )
 
 
 @dataclass(frozen=True)
 class Parts:
-    """Pantograph of n unknowns and S strips: masses of a chain, pitch, and strips on springs."""
+    """Pantograph of n unknowns and S strips: masses of a chain, pitch, strips on springs, roll, bending modes."""
 
     mass: Floats
     stiffness: Floats
@@ -157,12 +162,22 @@ class Parts:
     """Whether an unknown is a height, (n,)."""
     offset: Floats
     shape: Floats
+    """Displacement of each strip per unknown and power of the lateral position of the wire, (S, powers, n)."""
+    joint: Floats
+    joint_law: Floats
+    joint_datum: Floats
+    """Friction and stops as in `Heads`, and change of their gap with the height of springs without force, (J,)."""
+
+    @property
+    def axis_shape(self) -> Floats:
+        """Displacement of each strip per unknown below the axis of the track, (S, n)."""
+        return np.asarray(self.shape[:, 0])
 
     def hold(self, load: Floats, heights: Floats) -> Floats:
         """Displacements at rest with the strips held at heights, (n,)."""
         n, strips = self.mass.size, self.offset.size
         system = np.zeros((n + strips, n + strips))
-        system[:n, :n], system[:n, n:], system[n:, :n] = self.stiffness, self.shape.T, self.shape
+        system[:n, :n], system[:n, n:], system[n:, :n] = self.stiffness, self.axis_shape.T, self.axis_shape
         return np.linalg.solve(system, np.append(load, heights))[:n]
 
     def level_forces(self, load: Floats, force: float) -> Floats:
@@ -172,7 +187,7 @@ class Parts:
             return np.array([force])
         size = n + strips + 1
         system = np.zeros((size, size))
-        system[:n, :n], system[:n, n:-1], system[n:-1, :n] = self.stiffness, self.shape.T, self.shape
+        system[:n, :n], system[:n, n:-1], system[n:-1, :n] = self.stiffness, self.axis_shape.T, self.axis_shape
         system[n:-1, -1], system[-1, n:-1] = -1.0, 1.0
         right = np.concatenate([load, np.zeros(strips), [force]])
         return np.asarray(np.linalg.lstsq(system, right)[0][n:-1])
@@ -184,12 +199,14 @@ def build_parts(pantograph: CaseData) -> Parts:
     if chain is None:
         raise ValueError("the second formulation has pantographs of lumped masses only")
     head = pantograph.get("head") or {}
-    strips, pitch = head.get("strip", []), head.get("pitch")
+    strips, pitch, roll = head.get("strip", []), head.get("pitch"), head.get("roll")
+    modes: list[CaseData] = head.get("bending_mode", [])
     masses = len(chain["masses_kg"])
     turn = masses if pitch else None
     own = [n for n, strip in enumerate(strips) if strip.get("mass_kg")]
-    size = masses + bool(pitch) + len(own)
-    mass, shape = np.zeros(size), np.zeros((max(len(strips), 1), size))
+    rigid = masses + bool(pitch) + len(own)
+    size = rigid + bool(roll) + len(modes)
+    mass, shape = np.zeros(size), np.zeros((max(len(strips), 1), 5, size))
     matrices = np.zeros((2, size, size))
 
     def connect(ends: dict[int, float], spring: float, damper: float) -> None:
@@ -205,19 +222,58 @@ def build_parts(pantograph: CaseData) -> Parts:
     if pitch and turn is not None:
         mass[turn] = pitch["inertia_kg_m2"]
         connect({turn: 1.0}, pitch["stiffness_N_m_rad"], pitch["damping_N_m_s_rad"])
-    shape[0, masses - 1] = 1.0
+    shape[0, 0, masses - 1] = 1.0
     for n, strip in enumerate(strips):
         lower = {masses - 1: 1.0} | ({} if turn is None else {turn: strip["position_m"]})
         shape[n] = 0.0
         if n in own:
-            place = size - len(own) + own.index(n)
-            mass[place], shape[n, place] = strip["mass_kg"], 1.0
+            place = rigid - len(own) + own.index(n)
+            mass[place], shape[n, 0, place] = strip["mass_kg"], 1.0
             ends = {place: -1.0} | lower
             connect(ends, strip["stiffness_N_m"], strip["damping_N_s_m"])
         else:
-            shape[n, list(lower)] = list(lower.values())
+            shape[n, 0, list(lower)] = list(lower.values())
+    if roll:
+        mass[rigid], shape[:, 1, rigid] = roll["inertia_kg_m2"], 1.0
+        connect({rigid: 1.0}, roll["stiffness_N_m_rad"], roll["damping_N_m_s_rad"])
+    for place, mode in enumerate(modes, rigid + bool(roll)):
+        omega = 2 * np.pi * mode["frequency_Hz"]
+        mass[place] = 1.0
+        connect({place: 1.0}, omega**2, 2 * mode["damping_ratio"] * omega)
+        for n, polynomial in enumerate(mode["shapes"]):
+            shape[n, : len(polynomial), place] = polynomial
     offset = np.array([strip["position_m"] for strip in strips] or [0.0])
-    return Parts(mass, matrices[0], matrices[1], np.arange(size) != turn, offset, shape)
+    is_height = (np.arange(size) != turn) & (np.arange(size) < rigid)
+    shape = shape[:, : int(np.flatnonzero(shape.any(axis=(0, 2))).max()) + 1]
+    return Parts(mass, matrices[0], matrices[1], is_height, offset, shape, *_build_joints(head, chain, shape[:, 0]))
+
+
+def _build_joints(head: CaseData, chain: CaseData, strips: Floats) -> tuple[Floats, Floats, Floats]:
+    """Friction and stops between two parts, see `Parts`; displacement of each strip per unknown, (S, n)."""
+    size = strips.shape[1]
+
+    def move(part: int | str) -> Floats:
+        """Displacement of a part per unknown."""
+        if part == "base":
+            return np.zeros(size)
+        if isinstance(part, str) and part.startswith("strip "):
+            return np.asarray(strips[int(part[6:]) - 1])
+        return np.asarray(np.eye(size)[_find_mass(chain, part)])
+
+    rows, laws, datum = [], [], []
+    for table in head.get("friction", []):
+        lower, upper = map(move, table["between"])
+        rows.append(upper - lower)
+        laws.append((0.0, table["force_N"] / table["sliding_speed_m_s"], 0.0, -table["force_N"], table["force_N"]))
+        datum.append(0.0)
+    for table in head.get("stop", []):
+        lower, upper = map(move, table["between"])
+        for sign, key in ((1.0, "extension_m"), (-1.0, "compression_m")):
+            if table[key] is not None:
+                rows.append(sign * (upper - lower))
+                laws.append((table["stiffness_N_m"], table["damping_N_s_m"], table[key], 0.0, np.inf))
+                datum.append(sign if "base" in table["between"] else 0.0)
+    return np.reshape(rows, (-1, size)), np.reshape(laws, (-1, 5)), np.array(datum)
 
 
 def _place_forces(pantograph: CaseData, chain: CaseData, uplift_force: float) -> Floats:

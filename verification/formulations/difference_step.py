@@ -6,6 +6,8 @@ from numba import njit
 from verification.formulations.difference_line import Heads, Lines
 from verification.formulations.difference_strands import Floats, Indices
 
+JOINT_SWEEPS = 20
+"""Sweeps over the joints of a pantograph in a step."""
 HERTZ_ITERATIONS = 40
 """Iterations of the penetration by Hertz's law; each is nearer by the excess flexibility over that of the contact."""
 
@@ -22,6 +24,42 @@ def accelerate_pantograph(heads: Heads, k: int, dt: float) -> None:
 
 
 @njit(cache=True)
+def hold_joints(heads: Heads, k: int, dt: float, force: Floats) -> None:
+    """Velocities of a pantograph at the end of a step under the forces of its joints, too.
+
+    A joint feels the velocities at the end of the step: below the speed of sliding, friction is stiffer than a step.
+    """
+    force[:] = 0.0
+    for _ in range(JOINT_SWEEPS):
+        for j in range(force.size):
+            stiffness, damper, gap, lower, upper = heads.joint_law[k, j]
+            closing, rate, mobility = -gap, 0.0, 0.0
+            for i in range(heads.joint.shape[2]):
+                direction = heads.joint[k, j, i]
+                closing += direction * heads.height[k, i]
+                rate += direction * heads.velocity[k, i]
+                mobility += dt * direction**2 / heads.mass[k, i]
+            free = stiffness * closing + damper * (rate + mobility * force[j])
+            change = min(max(free / (1 + damper * mobility), lower), upper) - force[j]
+            force[j] += change
+            for i in range(heads.joint.shape[2]):
+                heads.velocity[k, i] -= dt * heads.joint[k, j, i] * change / heads.mass[k, i]
+
+
+@njit(cache=True)
+def shape_strip(line: Lines, heads: Heads, k: int, strip: int, x: float, w: Floats) -> Floats:
+    """Displacement of a strip per unknown, at the lateral position of the wire above it; x in spacings of points."""
+    shape, power, y = np.zeros(heads.shape.shape[3]), 1.0, 0.0
+    if line.lateral >= 0:
+        i, s = line.first[line.lateral] + int(x), x - int(x)
+        y = (1 - s) * (line.rest[i] + w[i]) + s * (line.rest[i + 1] + w[i + 1])
+    for n in range(heads.shape.shape[2]):
+        shape += power * heads.shape[k, strip, n]
+        power *= y
+    return shape
+
+
+@njit(cache=True)
 def push_wire(line: Lines, heads: Heads, k: int, strip: int, w: Floats, v: Floats) -> float:
     """Contact force of a strip, applied to strip and wire: a Catmull-Rom spline interpolates and distributes.
 
@@ -29,9 +67,10 @@ def push_wire(line: Lines, heads: Heads, k: int, strip: int, w: Floats, v: Float
     (infinite stiffness) lets strip and wire meet at the end of the step, at the strip's next position; the excess then
     remains as a penetration, which the spacing removes.
     """
-    constrained, shape = np.isinf(heads.contact_stiffness) and np.isinf(heads.hertz), heads.shape[k, strip]
+    constrained = np.isinf(heads.contact_stiffness) and np.isinf(heads.hertz)
     x = (heads.position[k] + heads.offset[k, strip] + heads.speed * line.step * constrained) / line.spacing
     s, point = x - int(x), line.first[line.contact] + int(x) - 1
+    shape = shape_strip(line, heads, k, strip, x, w)
     weights = (
         0.5 * (-s + 2 * s**2 - s**3),
         0.5 * (2 - 5 * s**2 + 3 * s**3),
@@ -196,6 +235,7 @@ def march(
         every: Steps between two recorded displacements.
     """
     p, before, tension = w.copy(), np.zeros(line.special.size), np.zeros(line.bar_stiffness.size)
+    rubbing = np.zeros(heads.joint.shape[1])
     for t in range(force.shape[2]):
         if t % every == 0:
             for j in range(watched.size):
@@ -207,6 +247,7 @@ def march(
             accelerate_pantograph(heads, k, line.step)
             for strip in range(heads.offset.shape[1]):
                 force[k, strip, t] = push_wire(line, heads, k, strip, w, v)
+            hold_joints(heads, k, line.step, rubbing)
             heads.height[k] += line.step * heads.velocity[k]
             heads.position[k] += heads.speed * line.step
         _join_parts(line, v, p)

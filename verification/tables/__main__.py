@@ -102,6 +102,7 @@ PROGRAMS = {
     "table-sensitivity": Program("tables.table_sensitivity", ("table-sensitivity",)),
     "contact-findings": Program("tables.contact_findings", ("contact-findings",)),
     "contact-laws": Program("tables.contact_table", ("contact-laws",)),
+    "constraint-limit": Program("tables.constraint_limit", ("constraint-limit",)),
     "pantograph-fit": Program("tables.pantograph_fit", ("pantograph-fit",)),
     "identification": Program("tables.identification", ("identification-scores",), "{drops} --made-up 6"),
     "identification-change": Program(

@@ -1,4 +1,4 @@
-"""Topic: every element of a line and every contact law in a short passage, against explicit finite differences."""
+"""Topic: elements of a line, contact laws and laws of the head in a short passage, against finite differences."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -43,6 +43,13 @@ CONTACTS = {
 }
 """Contacts beside the spring of the case. That of Hertz is softer than the points: others are near a constraint."""
 
+HEADS = {
+    "two strips": "two_strips",
+    "friction and stops": "rubbing_head",
+    "roll, bending and friction": "rolling_head",
+}
+"""Pantograph file of every structure of the head."""
+
 SPANS = 5
 UPLIFT_N = 169.0
 SPACINGS, MESH = (0.25, 0.125), (0.25, 5e-4)
@@ -56,15 +63,15 @@ DAMPED = 0.025
 
 
 def study_line_elements() -> Topic:
-    """Short passages with every element and every contact law."""
-    plain, file = shorten(find_case(SIMPLE), SPANS), Path(finite_differences.__file__).with_name("two_strips.toml")
+    """Short passages with every element, every contact law and every law of the head."""
+    plain = shorten(find_case(SIMPLE), SPANS)
     cases = {name: shorten(find_case(id_), SPANS) for name, id_ in LINES.items()}
     for name, contact in CONTACTS.items():
         cases[name] = replace(plain, pantographs=(plain.pantographs[0].model_copy(update={"contact": contact}),))
-    cases["two strips"] = replace(plain, pantographs=(read_model(file, PantographFile, "pantograph"),))
+    cases |= {name: replace(plain, pantographs=(read_head(file),)) for name, file in HEADS.items()}
     pairs = {name: (reference_quantities(case, *MESH, (UPLIFT_N,)), extrapolate(case)) for name, case in cases.items()}
     return Topic(
-        title="Elements of a line and contact laws",
+        title="Elements of a line, contact laws and heads",
         theory="Explicit finite differences solve the same equations with points in place of elements, and share no "
         "code with the reference simulator. A change of the line brings out each element.",
         setting=f"Spans 2 and 3 of {SPANS}, 320 km/h, {UPLIFT_N:g} N; points {SPACINGS[0]:g} m and {SPACINGS[1]:g} m "
@@ -72,7 +79,7 @@ def study_line_elements() -> Topic:
         f"Without a row: {'; '.join(map(': '.join, OTHERS.items()))}.",
         comparisons=[
             compare_relative(
-                f"{name.replace(' ', '-')}-{quantity}",
+                f"{name.replace(',', '').replace(' ', '-')}-{quantity}",
                 f"{name}: {words}",
                 "N",
                 (ours[1, quantity], other[1, quantity]),
@@ -83,6 +90,11 @@ def study_line_elements() -> Topic:
             for quantity, (words, tolerance) in QUANTITIES.items()
         ],
     )
+
+
+def read_head(name: str) -> PantographFile:
+    """Pantograph of the comparison of formulations, by the name of its file."""
+    return read_model(Path(finite_differences.__file__).with_name(f"{name}.toml"), PantographFile, "pantograph")
 
 
 def extrapolate(case: Case) -> Quantities:
