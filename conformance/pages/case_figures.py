@@ -214,6 +214,7 @@ def draw_limited_force(trace: Traces, rows: Sequence[Criterion], width: float) -
     axes.axhline(trace.mean_N, color=INK, linewidth=0.8, linestyle="-.")
     axes.plot(position, force, color=INK, linewidth=0.9)
     axes.set(xlim=(position[0], position[-1]), ylabel="force [N]")
+    axes.locator_params(axis="x", nbins=4 if width == HALF else 8)
     axes.xaxis.set_major_formatter(lambda x, _: f"{x:g} m")
     return figure
 

@@ -180,7 +180,8 @@ def _build_loss_section(losses: Mapping[str, Sequence[ContactLossFacts]]) -> tup
         return ()
     longest = sorted(rows, key=lambda row: -row[1].duration_s)[:LISTED_LOSSES]
     text = (
-        f"{len(rows)} contact losses in the unfiltered force, the longest first; a duration is a multiple of a sample."
+        f"{len(rows)} contact losses in the unfiltered force, the longest first; a duration is a multiple of a sample. "
+        "Times count from the start of the analysis section."
     )
     table = doc.make_table(
         longest,
