@@ -12,9 +12,12 @@ import threading
 import time
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from multiprocessing.process import BaseProcess, parent_process
 from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from multiprocessing.process import BaseProcess
 
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_GET_CHILD_SUBREAPER = 1, 36, 37  # linux/prctl.h
 _LIBRARY = ctypes.CDLL(None) if sys.platform == "linux" else None
@@ -113,13 +116,15 @@ def _follow_parent() -> None:
 
     Python runs the handler of a signal between two of its own instructions only. A kernel lets other threads run.
     """
+    from multiprocessing.process import parent_process  # its package takes 10 ms, which only workers need
+
     if (parent := parent_process()) is not None:
         parent.join()
         time.sleep(ORPHAN_GRACE)
         os._exit(128 + signal.SIGTERM)
 
 
-def end_workers(workers: Collection[BaseProcess]) -> None:
+def end_workers(workers: Collection["BaseProcess"]) -> None:
     """End worker processes: a signal lets each worker end its program; a worker that still runs is killed."""
     for worker in workers:
         worker.terminate()

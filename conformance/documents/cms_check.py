@@ -1,6 +1,5 @@
 """Check of a CMS signature: content, chain, validity, key usage and time stamp; and its result in words."""
 
-import asyncio
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any
@@ -187,6 +186,8 @@ def _validate(content: bytes, signed_data: Any, trust: TrustRoots, moment: datet
 
     With lists of revoked certificates, every certificate below a root needs a valid one.
     """
+    import asyncio
+
     from pyhanko.sign.validation.generic_cms import async_validate_detached_cms
     from pyhanko.sign.validation.settings import KeyUsageConstraints
     from pyhanko_certvalidator import ValidationContext

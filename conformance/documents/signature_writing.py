@@ -1,6 +1,5 @@
 """Writing of signatures in CMS (RFC 5652): signer with role, detached signatures of files, signatures in PDF."""
 
-import asyncio
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -92,6 +91,8 @@ def sign_detached(content: bytes, signer: Signer, earlier: bytes | None, where: 
     Raises:
         InputError: The earlier signature file is damaged, or the time-stamp server gave no time stamp.
     """
+    import asyncio
+
     from pyhanko.sign.signers.pdf_cms import PdfCMSSignedAttributes
 
     attributes = PdfCMSSignedAttributes(

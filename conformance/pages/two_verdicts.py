@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from xml.sax.saxutils import escape
+from html import escape
 
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.texts import count_noun
@@ -244,11 +244,11 @@ def render_badge(results: Results) -> str:
     total = sum(widths)
     starts = (0, widths[0])
     fills = ("#3b4249", COLOURS[mark_results(results)])
-    name = escape(": ".join(texts))
+    name = escape(": ".join(texts), quote=False)
     parts = [
         f'<rect x="{x}" width="{width}" height="20" fill="{fill}"/>'
         f'<text x="{x + MARGIN}" y="14" textLength="{width - 2 * MARGIN}" lengthAdjust="spacingAndGlyphs">'
-        f"{escape(text)}</text>"
+        f"{escape(text, quote=False)}</text>"
         for x, width, fill, text in zip(starts, widths, fills, texts, strict=True)
     ]
     return (

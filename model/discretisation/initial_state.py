@@ -4,9 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
+import scipy  # loads its parts when they are used
 from numpy.typing import NDArray
-from scipy.linalg import solveh_banded
 
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.catenary import GRAVITY, Catenary, Clamp, Dropper, Kind
@@ -18,7 +17,7 @@ from pantocheck.model.fem.mesh import Mesh
 
 
 def solve_with_prescribed_displacements(
-    stiffness: sp.csr_array, load: Array, free: NDArray[np.bool_], prescribed: Array
+    stiffness: "scipy.sparse.csr_array", load: Array, free: NDArray[np.bool_], prescribed: Array
 ) -> Array:
     """Solve K q = f for the free unknowns; a free unknown without stiffness stays at zero.
 
@@ -44,7 +43,9 @@ def solve_with_prescribed_displacements(
     distance, column = (row - column)[lower], column[lower]
     band = np.zeros((int(distance.max(initial=0)) + 1, active.size))
     np.add.at(band, (distance, column), entries.data[lower])
-    solution[active] = solveh_banded(band, (load - stiffness @ solution)[active], lower=True, check_finite=False)
+    solution[active] = scipy.linalg.solveh_banded(
+        band, (load - stiffness @ solution)[active], lower=True, check_finite=False
+    )
     return solution
 
 
@@ -84,7 +85,7 @@ def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_
     """Compute the equilibrium of the lateral rows; `dropper_stiffness` is vertical force over height [N/m]."""
     rows = [row for row in range(mesh.rows) if mesh.row_field[row] == "y"]
     stations = mesh.position.size
-    wires = sp.block_diag([wire_stiffness(beams, row) for row in rows], format="csr")
+    wires = scipy.sparse.block_diag([wire_stiffness(beams, row) for row in rows], format="csr")
 
     def deflection_index(wire: str, position: float) -> int:
         """Index of a deflection among the unknowns of the lateral rows."""
@@ -95,7 +96,7 @@ def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_
     lower = [deflection_index(bar.lower, bar.position) for bar in bars]
     bar_stiffness = np.append(dropper_stiffness, np.full(len(catenary.clamps), CLAMP_STIFFNESS))
     indices = (np.append(upper, lower).astype(int), np.tile(np.arange(len(bars)), 2))
-    elongation = sp.csr_array((np.repeat([1.0, -1.0], len(bars)), indices), shape=(wires.shape[0], len(bars)))
+    elongation = scipy.sparse.csr_array((np.repeat([1.0, -1.0], len(bars)), indices), shape=(wires.shape[0], len(bars)))
     free = beams.free[rows].copy()
     shape = np.zeros((len(rows), stations, 2))
     for wire in catenary.wires:
@@ -103,7 +104,7 @@ def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_
             row, station = rows.index(mesh.row_of[wire.name, "y"]), mesh.station(x)
             free[row, station, 0] = False
             shape[row, station, 0] = y
-    stiffness = sp.csr_array(wires + elongation @ sp.diags_array(bar_stiffness) @ elongation.T)
+    stiffness = scipy.sparse.csr_array(wires + elongation @ scipy.sparse.diags_array(bar_stiffness) @ elongation.T)
     load = np.concatenate([_radial_load(catenary, mesh, beams, row) for row in rows])
     solution = solve_with_prescribed_displacements(stiffness, load, free, shape.ravel())
     force = bar_stiffness * (elongation.T @ solution)
@@ -131,7 +132,7 @@ def _radial_load(catenary: Catenary, mesh: Mesh, beams: Beams, row: int) -> Arra
 # 4. The distance between the wires gives length and direction of the droppers.
 #
 # Equilibrium holds exactly in the finite-element sense, so that a simulation started from this state is at rest.
-Stiffness = Callable[[Beams, int], sp.csr_array]
+Stiffness = Callable[[Beams, int], "scipy.sparse.csr_array"]
 """Stiffness matrix of the wires of one row: as beams or as strings."""
 
 
@@ -187,7 +188,7 @@ def compute_initial_state(
             arm_force[n, 1] = reaction[mesh.row_of[arm.wire, "z"], mesh.station(arm.position)]
     # 2. Messenger and stitch wires.
     if upper:
-        matrix = sp.block_diag([stiffness(beams, row) for row in upper], format="csr")
+        matrix = scipy.sparse.block_diag([stiffness(beams, row) for row in upper], format="csr")
         deflection[upper], clamp_force[:, 1] = _hang_upper_wires(catenary, mesh, beams, upper, tension, matrix)
     height = _dropper_extent(catenary, mesh, deflection, "z")
     if height.size and height.min() <= 0:
@@ -208,7 +209,7 @@ def compute_initial_state(
 
 
 def _hold_contact_wire(
-    catenary: Catenary, mesh: Mesh, beams: Beams, row: int, stiffness: sp.csr_array
+    catenary: Catenary, mesh: Mesh, beams: Beams, row: int, stiffness: "scipy.sparse.csr_array"
 ) -> tuple[Array, Array]:
     """Shape of a contact wire held at its prescribed heights, and the holding force at each station."""
     names = {name for (name, field), wire_row in mesh.row_of.items() if wire_row == row and field == "z"}
@@ -259,7 +260,7 @@ def _dropper_tension(catenary: Catenary, mesh: Mesh, reaction: Array) -> Array:
 
 
 def _hang_upper_wires(
-    catenary: Catenary, mesh: Mesh, beams: Beams, rows: list[int], tension: Array, stiffness: sp.csr_array
+    catenary: Catenary, mesh: Mesh, beams: Beams, rows: list[int], tension: Array, stiffness: "scipy.sparse.csr_array"
 ) -> tuple[Array, Array]:
     """Shape of messenger and stitch wires under weight and dropper tensions, and the vertical forces of the clamps."""
     stations = mesh.position.size
@@ -281,7 +282,7 @@ def _hang_upper_wires(
     for clamp in catenary.clamps:
         merged[deflection_index(clamp.lower, clamp.position)] = deflection_index(clamp.upper, clamp.position)
         load[deflection_index(clamp.upper, clamp.position)] -= GRAVITY * clamp.mass
-    join = sp.csr_array((np.ones(free.size), (np.arange(free.size), merged)), shape=(free.size, free.size))
+    join = scipy.sparse.csr_array((np.ones(free.size), (np.arange(free.size), merged)), shape=(free.size, free.size))
     free[merged != np.arange(free.size)] = False
     joined, places = join.T @ stiffness @ join, free.reshape(len(rows), stations, 2)
     solution = join @ solve_with_prescribed_displacements(joined, join.T @ load, places, shape)

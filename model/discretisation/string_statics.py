@@ -7,7 +7,7 @@ that stations at the connectors are sufficient.
 import math
 from dataclasses import replace
 
-import scipy.sparse as sp
+import scipy  # loads its parts when they are used
 
 from pantocheck.model.description.catenary import Catenary
 from pantocheck.model.discretisation.initial_state import InitialState, compute_initial_state
@@ -38,6 +38,6 @@ def remove_staggers(catenary: Catenary) -> Catenary:
     return replace(catenary, wires=tuple(replace(wire, stagger=None) for wire in catenary.wires))
 
 
-def _string_stiffness(beams: Beams, row: int) -> sp.csr_array:
+def _string_stiffness(beams: Beams, row: int) -> "scipy.sparse.csr_array":
     """Stiffness of the wires of one row as strings; the slopes have no stiffness."""
     return assemble_row(beam.springs(beams.tension[row] / beams.length))

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-import scipy.sparse as sp
+import scipy  # loads its parts when they are used
 from numpy.typing import NDArray
 
 from pantocheck.model.description.arrays import Array
@@ -159,21 +159,21 @@ def element_stiffness(beams: Beams, row: int) -> Array:
     return beam.stiffness(beams.length, beams.tension[row], beams.bending_stiffness[row])
 
 
-def wire_stiffness(beams: Beams, row: int) -> sp.csr_array:
+def wire_stiffness(beams: Beams, row: int) -> "scipy.sparse.csr_array":
     """Stiffness of the wires of one row, (2 S, 2 S), unknowns (w, r) by station; without lumped parts and supports."""
     return assemble_row(element_stiffness(beams, row))
 
 
-def wire_mass(beams: Beams, row: int) -> sp.csr_array:
+def wire_mass(beams: Beams, row: int) -> "scipy.sparse.csr_array":
     """Consistent mass of the wires of one row; unknowns as in `wire_stiffness`."""
     return assemble_row(beam.mass(beams.length, beams.mass_per_length[row]))
 
 
-def assemble_row(elements: Array) -> sp.csr_array:
+def assemble_row(elements: Array) -> "scipy.sparse.csr_array":
     """Assemble the element matrices of a row, (S-1, 4, 4), to a matrix of its unknowns (w, r) by station."""
     unknowns = 2 * np.arange(len(elements))[:, None] + np.arange(4)
     indices = (np.repeat(unknowns, 4, axis=1).ravel(), np.tile(unknowns, (1, 4)).ravel())
-    matrix = sp.csr_array((elements.ravel(), indices), shape=(2 * len(elements) + 2,) * 2)
+    matrix = scipy.sparse.csr_array((elements.ravel(), indices), shape=(2 * len(elements) + 2,) * 2)
     matrix.eliminate_zeros()  # an element without a wire has neither stiffness nor mass
     return matrix
 

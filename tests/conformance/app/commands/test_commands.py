@@ -272,12 +272,12 @@ def test_every_case_of_the_library_is_listed_with_trust_source_and_forces() -> N
 
 
 HEAVY = {f"scipy.{name}" for name in ("signal", "stats", "interpolate", "ndimage", "optimize", "integrate", "spatial")}
+PAGES = {"matplotlib", "jinja2", "numba", "typst", "pypdf"}
+UNUSED = {"scipy.linalg", "scipy.sparse", "numpy.f2py", "asyncio", "ssl", "multiprocessing", "urllib.request"}
 
 
-def test_commands_of_an_editor_load_neither_plotting_nor_signal_processing_nor_the_compiler(tmp_path: Path) -> None:
-    """Their imports take longer than these commands; nor do the formats of other files load."""
-    source = ("--system", "record:en50318-2002/known-passing-code")
-    pantocheck("run", "en50318-2002/250", *source, "--out", tmp_path / "out", "--formats", "json")
+def list_loaded(words: str, folder: Path) -> list[set[str]]:
+    """Modules that are loaded after each of several commands in one fresh process."""
     code = (
         "import sys; from pantocheck.conformance.app.commands.command_list import app\n"
         "for words in sys.argv[1].split(';'):\n"
@@ -285,20 +285,33 @@ def test_commands_of_an_editor_load_neither_plotting_nor_signal_processing_nor_t
         "    except SystemExit as end: assert end.code in (0, 1), words\n"
         "    print('modules after', words, *sys.modules)"
     )
-    words = (
-        "new pantograph a.toml;check a.toml;cases;show en50318-2002/250;new line b.toml;new case c.toml --line b.toml;"
-        "check b.toml c.toml;verify out/results.json"
-    )
     command = [sys.executable, "-c", code, words]
-    result = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300, cwd=tmp_path)
+    result = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300, cwd=folder)
     loaded = [set(line.split()) for line in result.stdout.splitlines() if line.startswith("modules after")]
     assert len(loaded) == len(words.split(";"))
-    assert loaded[-1].isdisjoint({*HEAVY, "matplotlib", "jinja2", "numba", "typst", "pypdf"})
-    assert loaded[3].isdisjoint({"scipy.linalg", "scipy.sparse"})
+    return loaded
+
+
+def test_commands_of_an_editor_load_neither_plotting_nor_signal_processing_nor_the_compiler(tmp_path: Path) -> None:
+    """Their imports take longer than these commands; nor do the formats of other files load."""
+    words = (
+        "new pantograph a.toml;check a.toml;cases;show en50318-2002/250;new line b.toml;new case c.toml --line b.toml"
+    )
+    loaded = list_loaded(f"{words};check b.toml c.toml", tmp_path)
+    assert loaded[-1].isdisjoint(HEAVY | PAGES)  # the statics of a line need equation solvers
+    assert loaded[-2].isdisjoint(UNUSED)
     assert not {name for name in loaded[1] if name.endswith((".case_file", ".line_file", ".force_quantities"))}
     formats = {place.rpartition(".")[0] for place in {**READ_FORMATS.places, **WRITTEN_FORMATS.places}.values()}
     read = {"pantograph.pantograph_file", "cases.case_file", "cases.limits", "line.line_file", "line.elements.damping"}
-    assert {name for name in formats if f"pantocheck.conformance.{name}" in loaded[-2]} <= read
+    assert {name for name in formats if f"pantocheck.conformance.{name}" in loaded[-1]} <= read
+
+
+def test_verification_of_results_loads_no_solver_and_no_network(tmp_path: Path) -> None:
+    """Its values follow from numbers that the file holds."""
+    source = ("--system", "record:en50318-2002/known-passing-code")
+    pantocheck("run", "en50318-2002/250", *source, "--out", tmp_path / "out", "--formats", "json")
+    (loaded,) = list_loaded("verify out/results.json", tmp_path)
+    assert loaded.isdisjoint(HEAVY | PAGES | UNUSED)
 
 
 def test_run_without_pages_needs_neither_filters_of_scipy_nor_plotting(tmp_path: Path) -> None:
