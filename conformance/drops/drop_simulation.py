@@ -56,22 +56,8 @@ def simulate_drop(
     """
     mass_drop, discretisation = require_mass_drop(case), case.file.discretisation
     drop, catenary = mass_drop.drop[number - 1], line or build_catenary(case.line)
-    decay = integrate_mass_drop(
-        catenary,
-        discretisation.element_m,
-        MassDropSetup(
-            mass=drop.mass_kg,
-            wire=_first_wire(catenary, drop.wire, drop.x_m),
-            position=drop.x_m,
-            release_duration=drop.release_s,
-            hanging=mass_drop.hanging_s,
-            duration=mass_drop.record_s,
-            time_step=discretisation.time_step_s,
-            sensors=tuple((_first_wire(catenary, sensor.wire, sensor.x_m), sensor.x_m) for sensor in mass_drop.sensor),
-            axes=axes,
-        ),
-        progress,
-    )
+    setup = build_drop_setup(case, number, catenary, axes)
+    decay = integrate_mass_drop(catenary, discretisation.element_m, setup, progress)
     motion = decay.motion[:, :, MOTION_ORDER[mass_drop.quantity]].T
     signals = decimate(motion, round(1 / mass_drop.rate_Hz / discretisation.time_step_s))
     if mass_drop.noise_rms:
@@ -80,6 +66,23 @@ def simulate_drop(
         noise = np.random.default_rng(int.from_bytes(seed[:8], "little"))
         signals = signals + mass_drop.noise_rms * noise.standard_normal(signals.shape)
     return SimulatedDrop(_build_record(case, number, signals, axes), decay)
+
+
+def build_drop_setup(case: Case, number: int, catenary: Catenary, axes: tuple[Axis, ...] = ("z",)) -> MassDropSetup:
+    """Mass, release and sensors of a drop on a line; parameters as in `simulate_drop`."""
+    mass_drop = require_mass_drop(case)
+    drop = mass_drop.drop[number - 1]
+    return MassDropSetup(
+        mass=drop.mass_kg,
+        wire=_first_wire(catenary, drop.wire, drop.x_m),
+        position=drop.x_m,
+        release_duration=drop.release_s,
+        hanging=mass_drop.hanging_s,
+        duration=mass_drop.record_s,
+        time_step=case.file.discretisation.time_step_s,
+        sensors=tuple((_first_wire(catenary, sensor.wire, sensor.x_m), sensor.x_m) for sensor in mass_drop.sensor),
+        axes=axes,
+    )
 
 
 def require_mass_drop(case: Case) -> MassDrop:

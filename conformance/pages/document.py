@@ -12,6 +12,7 @@ from datetime import datetime
 from typing import Any, Literal, TypeVar
 
 from pantocheck.conformance.core.reproducibility import read_source_date
+from pantocheck.conformance.results.motion_format import LineScene
 from pantocheck.conformance.results.report_files import Language
 from pantocheck.conformance.results.results_format import Results
 
@@ -164,11 +165,11 @@ class Table:
 
 @dataclass(frozen=True)
 class Curves:
-    """Place in results.json of the curves of a figure, from which the script of a page draws them again."""
+    """Place of the curves of a figure in the results or scenes of a page, from which its script draws them again."""
 
     shown: Literal["force", "uplift", "measured", "passage"]
     case: int
-    """Index of the case in `cases`."""
+    """Index of the case in `cases`, or of the scene."""
     owner: str = "0"
     """Key of the pantograph in `traces`; "0": the line."""
     supported_Hz: float | None = None
@@ -269,6 +270,8 @@ class Document:
     """Date of the document [s since 1970]; 0: not known."""
     language: Language = "en"
     """Language of its pages; its texts are English until a writer translates them."""
+    scenes: tuple[LineScene, ...] = ()
+    """Moving pictures of a document without results, to be embedded in the HTML."""
 
 
 def to_plain(value: Any) -> Any:
@@ -326,6 +329,9 @@ NAME = "results.json"
 BLOCK_ID = "pantocheck-results"
 """Identity of the data block, a script element of the type `application/json`, which no browser executes."""
 
+SCENES_ID = "pantocheck-scenes"
+"""Identity of the data block of the moving pictures of a page without results."""
+
 ESCAPES = str.maketrans({character: f"\\u{ord(character):04x}" for character in "<>&"})
 """Escapes of JSON for the characters that could end the data block or begin a comment in it."""
 
@@ -349,6 +355,12 @@ def digest_results(results: Results) -> str:
 def encode_data_block(results: Results) -> str:
     """Content of the data block of the HTML page: results as JSON text in ASCII without `<`, `>` and `&`."""
     return json.dumps(results.to_dict(), separators=(",", ":"), allow_nan=False).translate(ESCAPES)
+
+
+def encode_scenes(scenes: Iterable[LineScene]) -> str:
+    """Content of the data block of moving pictures, in the form of the cases of results."""
+    cases = [scene.model_dump(mode="json") for scene in scenes]
+    return json.dumps({"cases": cases}, separators=(",", ":"), allow_nan=False).translate(ESCAPES)
 
 
 def find_date(results: Results) -> int:

@@ -13,22 +13,27 @@ from markupsafe import Markup
 
 from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.core.texts import TEMPLATES
-from pantocheck.conformance.pages.document import BLOCK_ID, Document, encode_data_block, to_plain
-from pantocheck.conformance.pages.page_code import read_plain_code, read_results_code
+from pantocheck.conformance.pages.document import (
+    BLOCK_ID,
+    SCENES_ID,
+    Document,
+    encode_data_block,
+    encode_scenes,
+    to_plain,
+)
+from pantocheck.conformance.pages.page_code import PageCode, read_plain_code, read_results_code, read_scene_code
 from pantocheck.conformance.pages.translation import translate, translate_document, translate_tree
 from pantocheck.conformance.pages.words import bind_page_units, read_words
 
 
 def render_html(document: Document) -> str:
-    """HTML text of a document; its results are embedded as a data block."""
-    # The encoded results hold no character that HTML interprets.
-    block = None if document.results is None else Markup(encode_data_block(document.results))
+    """HTML text of a document; its results or scenes are embedded as a data block."""
     language = document.language
-    code = read_plain_code(language) if document.results is None else read_results_code(language)
+    name, block, code = _choose_code(document)
     page = _build_environment().get_template("page.html")
     words = read_words()
     return page.render(
-        document=bind_page_units(to_plain(replace(translate_document(document), results=None))),
+        document=bind_page_units(to_plain(replace(translate_document(document), results=None, scenes=()))),
         translate=lambda text: translate(text, language).text,
         verdicts=translate_tree(words["verdict"], language),
         trusts=translate_tree(words["trust"], language),
@@ -36,11 +41,20 @@ def render_html(document: Document) -> str:
         scripts=tuple(map(Markup, code.scripts)),
         policy=Markup(code.policy),
         notice=Markup(code.notice),
-        results=block,
+        results=block and Markup(block),  # the encoded text holds no character that HTML interprets
         date="" if document.results is None else format_date(document.date),
-        results_id=BLOCK_ID,
+        results_id=name,
         figure_numbers=count(1),
     )
+
+
+def _choose_code(document: Document) -> tuple[str, str | None, PageCode]:
+    """Identity and content of the data block of a page, and its code."""
+    if document.results is not None:
+        return BLOCK_ID, encode_data_block(document.results), read_results_code(document.language)
+    if document.scenes:
+        return SCENES_ID, encode_scenes(document.scenes), read_scene_code(document.language)
+    return "", None, read_plain_code(document.language)
 
 
 @cache

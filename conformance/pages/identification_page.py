@@ -1,6 +1,7 @@
 """Report on an identification, from identification.json."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages import identification_figures as figures
@@ -13,6 +14,7 @@ from pantocheck.conformance.pages.identification_figures import (
     draw_spectra,
     draw_stretch,
 )
+from pantocheck.conformance.pages.mode_scene import build_mode_scene
 from pantocheck.conformance.pages.record_figures import DrawnPlace, draw_drop_layout, draw_motion, draw_spectrogram
 from pantocheck.conformance.pages.shape_figure import draw_shapes, list_measured_shapes, list_supports
 from pantocheck.conformance.pages.words import clean_tree, format_percent, format_plain, format_value
@@ -29,6 +31,7 @@ from pantocheck.conformance.results.identification_format import (
     Spectrogram,
 )
 from pantocheck.conformance.results.identified_modes import Mode
+from pantocheck.conformance.results.motion_format import LineScene
 
 # Fit: residual, model order and spectra.
 UNITS = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
@@ -83,8 +86,8 @@ MODES_TEXT = (
 )
 
 
-def list_mode_blocks(line: IdentifiedLine) -> Iterator[doc.Block]:
-    """Explanation, figures and table of the modes of one line of identification.json."""
+def list_mode_blocks(line: IdentifiedLine, scene: int | None = None) -> Iterator[doc.Block]:
+    """Explanation, figures and table of the modes of one line; `scene` is the index of its moving shapes."""
     yield doc.Paragraph(MODES_TEXT)
     yield from _half_power(line)
     if columns := list_measured_shapes(line.modes):
@@ -94,6 +97,8 @@ def list_mode_blocks(line: IdentifiedLine) -> Iterator[doc.Block]:
             f"Real part of the mode shapes at the sensors, {groups}; each shape is scaled to its largest component. "
             "The numbers are in modes.json.",
             f"Mode shapes at the sensors, {groups}: real part over the position; vertical lines are supports.",
+            curves=None if scene is None else doc.Curves("passage", scene),
+            anchor="" if scene is None else f"shapes-{scene + 1}",
         )
         yield doc.Figures((figure,))
     yield _mode_table(line.modes)
@@ -272,10 +277,12 @@ def build_identification_document(lines: Sequence[IdentifiedLine]) -> doc.Docume
     headline = f"{certain} modes identified with a damping ratio known to better than 5 %"
     headline += f"; {len(modes) - certain} more are uncertain or lateral." if len(modes) > certain else "."
     blocks: list[doc.Block] = [*doc.warn(collect_warnings(lines))]
+    scenes: list[LineScene] = []
     for line in lines:
-        names = ", ".join(record.name for record in line.records)
-        blocks += _list_sections(line, f" ({names})" if len(lines) > 1 else "")
-    return doc.build_plain_document("Identification of mass drops", headline, blocks)
+        names, scene = ", ".join(record.name for record in line.records), build_mode_scene(line)
+        blocks += _list_sections(line, f" ({names})" if len(lines) > 1 else "", None if scene is None else len(scenes))
+        scenes += [scene] if scene else []
+    return replace(doc.build_plain_document("Identification of mass drops", headline, blocks), scenes=tuple(scenes))
 
 
 def collect_warnings(lines: Sequence[IdentifiedLine]) -> tuple[str, ...]:
@@ -283,11 +290,11 @@ def collect_warnings(lines: Sequence[IdentifiedLine]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(text for line in lines for text in line.warnings))
 
 
-def _list_sections(line: IdentifiedLine, suffix: str) -> Iterator[doc.Section]:
+def _list_sections(line: IdentifiedLine, suffix: str, scene: int | None) -> Iterator[doc.Section]:
     yield doc.Section(
         f"Damping{suffix}", (*_damping_figures(line.modes), _group_table(line.groups, UNITS[line.quantity]))
     )
-    yield doc.Section(f"Modes{suffix}", tuple(list_mode_blocks(line)))
+    yield doc.Section(f"Modes{suffix}", tuple(list_mode_blocks(line, scene)))
     # The records stand before the fit: its tall figure starts a page, and they fill the one before.
     yield doc.Section(f"Records{suffix}", tuple(list_record_blocks(line)))
     yield doc.Section(f"Fit{suffix}", tuple(list_fit_blocks(line)))

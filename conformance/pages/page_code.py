@@ -22,11 +22,14 @@ TABLE_SCRIPTS = ("elements", "folding", "tables")
 CHOICE_SCRIPTS = ("pole_choice",)
 """Further parts of the script of a page without results; each acts on the tables that it knows."""
 
+SCENE_SCRIPTS = ("results", "plot_style", "motion_data", "passage_signals", "passage_scene", "passage_view", "views")
+"""Further parts of the script of a page with moving pictures and without results."""
+
 CURVE_SCRIPTS = (
     *("results", "download", "spectrum", "spans"),
     *("plot_style", "legend", "plot_lines", "plot_keys", "touch", "plot"),
     *("force_view", "curves_view", "uplift_view", "measured_view"),
-    *("motion_data", "passage_scene", "passage_view", "views"),
+    *SCENE_SCRIPTS[2:],
 )
 """Further parts of the script of a page with results, in the order of their use."""
 
@@ -52,6 +55,13 @@ class PageCode:
 def read_plain_code(language: str = LANGUAGES[0]) -> PageCode:
     """Styles and scripts of a page without results."""
     script = join_scripts(name_scripts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS)), language)
+    return PageCode((translate_marked(_read(PAGE_STYLE), language),), (script,))
+
+
+@cache
+def read_scene_code(language: str = LANGUAGES[0]) -> PageCode:
+    """Styles and scripts of a page with moving pictures and without results."""
+    script = join_scripts(name_scripts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS, *SCENE_SCRIPTS)), language)
     return PageCode((translate_marked(_read(PAGE_STYLE), language),), (script,))
 
 

@@ -1,4 +1,4 @@
-"""Moving picture of a passage in results.json: shapes of the wires, slack droppers and pantographs at equal times.
+"""Moving picture of a line: shapes of the wires, slack droppers and pantographs at equal times.
 
 Coding of a field of frames and columns: values are rounded to a multiple of a step, as 16-bit numbers, with the lowest
 number for a missing value; each is replaced by its difference from the frame before, and this by its difference from
@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.figure_data import check_lengths
+from pantocheck.conformance.core.figure_data import LineShape, check_lengths
 from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart
 
 MISSING = -(2**15)
@@ -110,19 +110,21 @@ class MovingPantograph(ResultsPart):
 
 
 class PassageMotion(ResultsPart):
-    """Moving picture of a passage, an illustration: no value and no verdict follows from it."""
+    """Moving picture of a line under pantographs or free, an illustration: no value and no verdict follows from it."""
 
     start_s: FiniteNumber
     step_s: Annotated[FiniteNumber, Field(gt=0)]
     """Time of the first frame after the start of the run, and time between two frames."""
-    speed_m_s: Annotated[FiniteNumber, Field(gt=0)]
+    speed_m_s: Annotated[FiniteNumber, Field(ge=0)]
+    """Speed of the pantographs; 0: there are none."""
     wires: list[MovingWire]
     dropper_m: list[FiniteNumber]
     slack: CodedField | None
     """1 for a slack dropper at these positions, else 0; null: no dropper."""
     pantographs: list[MovingPantograph]
-    error_mm: FiniteNumber
-    """Largest difference of the coded rises, joined by straight lines along the wires, from the simulated ones."""
+    error_mm: FiniteNumber | None
+    """Largest difference of the coded rises, joined by straight lines along the wires, from the simulated ones; null:
+    the rises have no scale."""
 
     @model_validator(mode="after")
     def _equal_frames(self) -> Self:
@@ -133,4 +135,27 @@ class PassageMotion(ResultsPart):
             raise ValueError("the fields of the moving picture have different numbers of frames")
         if self.slack is not None:
             check_lengths(self, self.dropper_m, [0.0] * self.slack.columns)
+        return self
+
+
+class LineScene(ResultsPart):
+    """Moving pictures of one line without pantographs, from which a reader chooses: mass drops, or mode shapes."""
+
+    id: str
+    """Name of the line or of its record."""
+    label: str
+    """Quantity and unit of the rises at the points with the symbol `sensor`."""
+    line_shape: LineShape
+    names: Annotated[list[str], Field(min_length=1)]
+    motions: list[PassageMotion]
+    """One picture for each name."""
+    speed: Annotated[FiniteNumber, Field(gt=0)]
+    """Speed at the start, over that of the motion."""
+    gain: Annotated[FiniteNumber, Field(gt=0)]
+    """Enlargement of the motion over the heights at the start."""
+
+    @model_validator(mode="after")
+    def _named_motions(self) -> Self:
+        if len(self.names) != len(self.motions):
+            raise ValueError("every moving picture needs a name")
         return self

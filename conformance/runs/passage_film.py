@@ -1,6 +1,6 @@
-"""Moving picture of the passage of a case, simulated once more: it is coded within a bound of its size."""
+"""Moving pictures of a simulated line, coded within a bound of their size; that of a passage is simulated once more."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +17,7 @@ from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.motion_format import (
+    CodedField,
     MovingPantograph,
     MovingWire,
     PassageMotion,
@@ -35,9 +36,6 @@ SMALLEST_SPACING_M = 0.45
 MOST_LETTERS = 400_000
 """Largest size of a coded picture."""
 
-CODED_FORMS = ((0.1, 1, 2), (0.2, 1, 2), (0.5, 1, 2), (0.5, 1, 3), (1.0, 1, 3), (1.0, 1, 4), (1.0, 2, 4), (1.0, 2, 8))
-"""Step of the rises [mm], and the frames and stations of which one is kept: the first form that is small enough."""
-
 BAND_RATE_HZ = 250.0
 """Least rate of the part of the force in the extended band."""
 
@@ -46,14 +44,45 @@ Samples = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class _Stretch:
-    """Drawn part of a passage."""
+class FilmedStretch:
+    """Drawn part of a line, and the instants of its picture."""
 
     wires: tuple[tuple[int, int], ...]
     """Curve of the shape of the line, and row of the mesh, of each wire."""
     ends: tuple[tuple[float, float], ...]
     """Ends of each wire [m]."""
     request: FrameRequest
+
+
+@dataclass(frozen=True)
+class CodedForm:
+    """Form of a coded picture."""
+
+    step_mm: float
+    """Step of the rises."""
+    nth_frame: int
+    nth_station: int
+    """Of which frames and stations one is kept."""
+
+
+@dataclass(frozen=True)
+class CodedLine:
+    """Coded wires and droppers of a moving picture."""
+
+    wires: list[MovingWire]
+    dropper_m: list[float]
+    slack: CodedField | None
+    error_mm: float
+
+
+CODED_FORMS = tuple(
+    CodedForm(*form)
+    for form in (
+        *((0.1, 1, 2), (0.2, 1, 2), (0.5, 1, 2), (0.5, 1, 3)),
+        *((1.0, 1, 3), (1.0, 1, 4), (1.0, 2, 4), (1.0, 2, 8)),
+    )
+)
+"""Forms of a picture: the first one that is small enough is taken."""
 
 
 def film_passage(
@@ -78,23 +107,25 @@ def film_passage(
         Picture; None if another program moves a pantograph, or if no form is small enough.
     """
     passage = build_passage(case, line, discretisation, uplift_forces)
-    stretch = _choose_stretch(case, line, shape, passage.time_step, round(passage.duration / passage.time_step))
+    steps = _choose_steps(case, passage.time_step, round(passage.duration / passage.time_step))
+    stretch = choose_stretch(line, shape, steps)
     if case.fmus or not stretch.request.steps:
         return None
-    steps = stretch.request.steps
     frames = integrate_passage(line, replace(passage, frames=stretch.request, watched=())).frames
     if frames is None:
         return None
     signals, at = RecordSignals(record, case.file.filter).pantographs, np.array(steps) - 1
-    for form in CODED_FORMS:
-        motion = _code_motion(case, line, stretch, frames, signals, record, at, form)
-        if len(motion.model_dump_json()) <= MOST_LETTERS:
-            return motion
-    return None
+    return take_small_form(lambda form: _code_motion(case, line, stretch, frames, signals, record, at, form))
 
 
-def _choose_stretch(case: Case, line: DiscretisedLine, shape: LineShape, time_step: float, steps: int) -> _Stretch:
-    """Drawn wires and stations, and the steps during which a pantograph is in the analysis section or near it."""
+def take_small_form(code_motion: Callable[[CodedForm], PassageMotion]) -> PassageMotion | None:
+    """Picture in the first form that is small enough; None: there is none."""
+    motions = map(code_motion, CODED_FORMS)
+    return next((motion for motion in motions if len(motion.model_dump_json()) <= MOST_LETTERS), None)
+
+
+def choose_stretch(line: DiscretisedLine, shape: LineShape, steps: Sequence[int]) -> FilmedStretch:
+    """Wires and stations of the drawn line, and the completed steps of its frames."""
     first, last = shape.supports_m[0], shape.supports_m[-1]
     views = [(wire, x) for wire, x, _ in LineView(line, "z", first, last).wires() if x.size > 1]
     position = line.mesh.position
@@ -103,29 +134,52 @@ def _choose_stretch(case: Case, line: DiscretisedLine, shape: LineShape, time_st
     for station in inside[1:]:
         if position[station] - position[kept[-1]] >= SMALLEST_SPACING_M:
             kept.append(int(station))
+    rows = [line.mesh.row_of[wire.name, "z"] for wire, _ in views]
+    request = FrameRequest(tuple(steps), tuple(rows), tuple(kept))
+    ends = tuple((float(x[0]), float(x[-1])) for _, x in views)
+    return FilmedStretch(tuple(enumerate(rows)), ends, request)
+
+
+def _choose_steps(case: Case, time_step: float, steps: int) -> range:
+    """Steps during which a pantograph is in the analysis section or near it."""
     (start, end), margin = case.analysis_section, case.line.geometry.longest_span / 2
     begin = max((start - margin - max(case.start_positions)) / case.speed, 0.0)
     finish = (end + margin - min(case.start_positions)) / case.speed
-    every = max(1, round(1 / (FRAMES_PER_S * time_step)))
-    chosen = range(max(round(begin / time_step), 1), min(round(finish / time_step), steps) + 1, every)
-    rows = [line.mesh.row_of[wire.name, "z"] for wire, _ in views]
-    request = FrameRequest(tuple(chosen), tuple(rows), tuple(kept))
-    ends = tuple((float(x[0]), float(x[-1])) for _, x in views)
-    return _Stretch(tuple(enumerate(rows)), ends, request)
+    return space_frames(max(round(begin / time_step), 1), min(round(finish / time_step), steps), time_step)
+
+
+def space_frames(first: int, last: int, time_step: float) -> range:
+    """Steps of the frames between two steps."""
+    return range(first, last + 1, max(1, round(1 / (FRAMES_PER_S * time_step))))
 
 
 def _code_motion(
     case: Case,
     line: DiscretisedLine,
-    stretch: _Stretch,
+    stretch: FilmedStretch,
     frames: Frames,
     signals: dict[int, PantographSignals],
     record: Record,
     at: Samples,
-    form: tuple[float, int, int],
+    form: CodedForm,
 ) -> PassageMotion:
     """Code a picture in one form; `at` are the samples of the record at the frames."""
-    step_mm, nth_frame, nth_station = form
+    coded, time, nth_frame = code_line(line, stretch, frames, form), record.time[at], form.nth_frame
+    return PassageMotion(
+        start_s=round(float(time[0]), 6),
+        step_s=round(float(nth_frame * (time[1] - time[0])), 9),
+        speed_m_s=case.speed,
+        pantographs=[
+            _code_pantograph(case, number, part, record, at[::nth_frame], frames.unknowns[::nth_frame, number - 1])
+            for number, part in signals.items()
+        ],
+        **vars(coded),
+    )
+
+
+def code_line(line: DiscretisedLine, stretch: FilmedStretch, frames: Frames, form: CodedForm) -> CodedLine:
+    """Code the wires and droppers of a picture in one form."""
+    step_mm, nth_frame, nth_station = form.step_mm, form.nth_frame, form.nth_station
     x = line.mesh.position[list(stretch.request.stations)]
     wires, errors = [], []
     for (curve, _), (start, end), rise in zip(
@@ -141,18 +195,10 @@ def _code_motion(
     place = line.mesh.position[line.connectors.station[dropper]]
     dropper = dropper[(place >= x[0]) & (place <= x[-1])]
     slack = (frames.tension[::nth_frame, dropper] == 0).astype(np.float64)
-    time = record.time[at]
-    return PassageMotion(
-        start_s=round(float(time[0]), 6),
-        step_s=round(float(nth_frame * (time[1] - time[0])), 9),
-        speed_m_s=case.speed,
+    return CodedLine(
         wires=wires,
         dropper_m=[round(float(p), 2) for p in line.mesh.position[line.connectors.station[dropper]]],
         slack=code_field(slack, 1.0) if dropper.size else None,
-        pantographs=[
-            _code_pantograph(case, number, part, record, at[::nth_frame], frames.unknowns[::nth_frame, number - 1])
-            for number, part in signals.items()
-        ],
         error_mm=float(f"{max(errors):.2g}"),
     )
 

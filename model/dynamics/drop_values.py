@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from pantocheck.model.description.arrays import Array
+from pantocheck.model.dynamics.passage import FrameRequest, Frames
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,8 @@ class MassDropSetup:
     """Wire and position of each sensor [-, m]."""
     axes: tuple[str, ...] = ("z",)
     """Axes that each sensor records: "z" vertical, "y" lateral, which needs a line with a lateral field."""
+    frames: FrameRequest | None = None
+    """Moving picture to be recorded on the mesh of `discretise_drop`; None: none."""
 
 
 @dataclass(frozen=True)
@@ -41,3 +44,5 @@ class FreeDecay:
     """Last time after the release at which a dropper was slack; None if never [s]."""
     slack_at_start: int
     """Number of slack droppers under the hanging mass."""
+    frames: Frames | None = None
+    """Moving picture; None: none was recorded."""

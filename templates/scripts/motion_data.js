@@ -1,4 +1,4 @@
-// Coded fields of the moving picture of a passage, see `motion_format.py`.
+// Coded fields of the moving picture of a line, see `motion_format.py`.
 
 /** Number of a missing value. */
 const MISSING = -32768;
@@ -36,12 +36,25 @@ function readField(field, frame, column) {
   return Number.isNaN(after) || share <= 0 ? before : before + share * (after - before);
 }
 
+/** Value of a curve between its points; null outside of them. */
+function interpolate(x, y, at) {
+  let low = 0;
+  let high = x.length - 1;
+  if (at < x[low] || at > x[high]) return null;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (x[middle] <= at) low = middle;
+    else high = middle;
+  }
+  return y[low] + ((y[high] - y[low]) * (at - x[low])) / (x[high] - x[low]);
+}
+
 /** Curve of a wire at rest as a function of the position [m]; outside of it its last height. */
 function restHeight(curve) {
   return (place) => interpolate(curve.x_m, curve.y_m, Math.min(Math.max(place, curve.x_m[0]), curve.x_m.at(-1)));
 }
 
-/** Passage of a case with its fields decoded: wires, droppers and pantographs as functions of the frame. */
+/** Moving picture on a line with its fields decoded: wires, droppers and pantographs as functions of the frame. */
 async function decodePassage(shownCase) {
   const { motion, line_shape: shape } = shownCase;
   const wires = await Promise.all(

@@ -1,13 +1,16 @@
-// Drawing of one instant of a passage on a canvas: side view, plan view, and signals over one time axis.
+// Drawing of one instant of a moving line on a canvas: side view, plan view, and signals over one time axis.
 
 /** Heights of the panels [px], margins at the left and right, and distance of two panels. */
-const PANELS = { side: 230, plan: 64, force: 130, band: 64, uplift: 90 };
+const PANELS = { side: 230, plan: 64, force: 130, band: 64, uplift: 90, sensor: 130 };
 const LEFT = 50;
 const RIGHT = 8;
 const BETWEEN = 32;
 
 /** Length of the line that is visible while a pantograph is followed [m]. */
 const FOLLOWED_M = 50;
+
+/** Room above and below the wires for shapes without a scale [m]. */
+const SHAPE_ROOM_M = 0.5;
 
 /** Distance of two masses of a pantograph, and half of the width of a mass [px]. */
 const MASS_GAP = 30;
@@ -16,46 +19,16 @@ const MASS_HALF = 12;
 /** Width of a line by the kind of a wire [px]. */
 const WIRE_WIDTHS = { contact_wire: 2.4, messenger_wire: 1.5, stitch_wire: 1 };
 
-/** Curves of the panels of signals: `key`, `unit` and `curves` with times, values, colour, width, and `levels`. */
-function listSignals(shownCase, passage) {
-  const frameTimes = Array.from({ length: passage.frames }, (_, i) => passage.start_s + i * passage.step_s);
-  const force = { key: "force", label: translate("force [N]"), curves: [], levels: [] };
-  const band = { key: "band", label: "20–50 Hz [N]", curves: [], levels: [] };
-  passage.pantographs.forEach((part, i) => {
-    const trace = shownCase.traces[i + 1];
-    const { colour: name } = curveStyle(i);
-    const timeAt = (place) => passage.start_s + (place - part.start_m) / passage.speed_m_s;
-    if (trace) force.curves.push({ x: trace.position_m.map(timeAt), y: trace.force_N, colour: "faint", width: 0.7 });
-    force.curves.push({ x: frameTimes, y: part.force.values, colour: name, width: 1.6 });
-    force.levels.push(...forceLevels(shownCase, i + 1, name));
-    if (!part.band) return;
-    const times = Array.from(part.band.values, (_, n) => part.band_start_s + n * part.band_step_s);
-    band.curves.push({ x: times, y: part.band.values, colour: name, width: 1.2 });
-  });
-  const supports = shownCase.uplift.filter((support) => support.time_s.length);
-  const uplift = { key: "uplift", label: translate("uplift [mm]"), levels: [], curves: [] };
-  supports.forEach((support, i) => uplift.curves.push({ x: support.time_s, y: support.uplift_mm, width: 1.3, ...curveStyle(i), peak: `${formatNumber(support.support_m, 6)} m` }));
-  uplift.levels = upliftLimits(shownCase, 1).map(({ values }) => ({ lower: values[0], upper: values[0], text: "", colour: "ink" }));
-  return [force, band, uplift].filter(({ curves }) => curves.length);
-}
-
-/** Limits of mean and extremes of the force of a pantograph: a band between two limits, or a line. */
-function forceLevels(shownCase, owner, name) {
-  const names = { mean_force_N: translate("mean"), max_force_N: translate("maximum"), min_force_N: translate("minimum") };
-  return shownCase.criteria
-    .filter((row) => row.pantograph === owner && row.quantity in names && row.baseline === null)
-    .map(({ lower, upper, quantity }) => ({ lower: lower ?? upper, upper: upper ?? lower, text: names[quantity], colour: name }))
-    .filter(({ lower }) => lower !== null);
-}
-
-/** Scene of a passage: draws on the canvas of a view. */
+/** Scene of a moving line: draws on the canvas of a view. */
 class PassageScene {
   constructor(canvas, shownCase, passage) {
     Object.assign(this, { canvas, passage, case: shownCase, signals: listSignals(shownCase, passage) });
     const places = passage.wires.flatMap(({ curve }) => [curve.x_m[0], curve.x_m.at(-1)]);
     this.whole = [Math.min(...places), Math.max(...places)];
     const heights = passage.wires.flatMap(({ curve }) => curve.y_m);
-    this.heights = [Math.min(...heights), Math.max(...heights)];
+    this.hasScale = passage.error_mm !== null;
+    const room = this.hasScale ? 0 : SHAPE_ROOM_M;
+    this.heights = [Math.min(...heights) - room, Math.max(...heights) + room];
     this.times = [passage.start_s, passage.start_s + (passage.frames - 1) * passage.step_s];
     const keys = ["side", ...(passage.shape.plan ? ["plan"] : []), ...this.signals.map(({ key }) => key)];
     this.panels = {};
@@ -65,17 +38,32 @@ class PassageScene {
       top += PANELS[key] + BETWEEN;
     }
     this.height = top + 12;
-    this.masses = Math.max(...passage.pantographs.map(({ height }) => height.columns));
+    this.masses = Math.max(2, ...passage.pantographs.map(({ height }) => height.columns));
+    this.layer = element("canvas");
   }
 
   /** Fit the canvas to a width [px]. */
   fit(width) {
     const ratio = window.devicePixelRatio || 1;
     this.width = width;
-    Object.assign(this.canvas, { width: Math.round(width * ratio), height: Math.round(this.height * ratio) });
     this.canvas.style.height = `${this.height}px`;
-    this.pen = this.canvas.getContext("2d");
-    this.pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    [this.still, this.pen] = [this.layer, this.canvas].map((canvas) => {
+      Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(this.height * ratio) });
+      const pen = canvas.getContext("2d");
+      pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+      pen.font = "12px system-ui, sans-serif";
+      return pen;
+    });
+    this.drawStill();
+  }
+
+  /** Draw what no instant changes, the signals, once on a layer of its own. */
+  drawStill() {
+    const { pen } = this;
+    this.pen = this.still;
+    this.pen.clearRect(0, 0, this.width, this.height);
+    for (const signal of this.signals) this.drawSignal(signal);
+    this.pen = pen;
   }
 
   /** Visible stretch of the line at a time [m]. */
@@ -123,12 +111,11 @@ class PassageScene {
     const { pen } = this;
     const frame = (time - this.times[0]) / this.passage.step_s;
     pen.clearRect(0, 0, this.width, this.height);
-    pen.font = "12px system-ui, sans-serif";
+    pen.drawImage(this.layer, 0, 0, this.width, this.height);
     this.drawGround();
     this.inPanel("side", () => this.drawLine(frame));
     this.inPanel("side", () => this.passage.pantographs.forEach((part, i) => this.drawPantograph(part, i, time, frame)));
     if (this.panels.plan) this.drawPlan(time);
-    for (const signal of this.signals) this.drawSignal(signal);
     this.drawCursor(time);
   }
 
@@ -169,6 +156,15 @@ class PassageScene {
     this.pen.fillText(text, x, y);
   }
 
+  /** A text that ends at a place, on a piece of paper that hides the curves below it. */
+  writeOnPaper(text, right, y) {
+    if (!text) return;
+    const width = this.pen.measureText(text).width;
+    this.pen.fillStyle = colour("paper");
+    this.pen.fillRect(right - width - 3, y - 11, width + 6, 14);
+    this.write(text, right, y, "ink", "right");
+  }
+
   /** Ground of the analysis section, masts, and positions of the supports below the side view. */
   drawGround() {
     const { top, height } = this.panels.side;
@@ -199,6 +195,8 @@ class PassageScene {
   /** Wires, droppers, arms and other points. */
   drawLine(frame) {
     const { passage, pen } = this;
+    const sensors = listSensors(passage);
+    const released = this.times[0] + frame * passage.step_s > 0;
     const visible = (x) => x >= this.stretch[0] - 5 && x <= this.stretch[1] + 5;
     for (const dropper of passage.droppers.filter(({ x }) => visible(x))) {
       const x = this.atPlace(dropper.x);
@@ -214,15 +212,19 @@ class PassageScene {
     }
     for (const wire of passage.wires) {
       const points = wire.x.map((x, i) => [this.atPlace(x), this.atHeight(wire.rest(x), readField(wire.rise, frame, i) / 1000)]);
+      if (!this.hasScale) this.stroke(wire.curve.x_m.map((x, i) => [this.atPlace(x), this.atHeight(wire.curve.y_m[i], 0)]), "faint", 0.7);
       this.stroke(points, "ink", WIRE_WIDTHS[wire.kind]);
     }
-    for (const point of passage.points.filter(({ x_m, wire }) => wire && visible(x_m))) {
+    for (const point of passage.points.filter(({ x_m, wire, symbol }) => wire && visible(x_m) && !(symbol === "mass" && released))) {
       const [x, y] = [this.atPlace(point.x_m), this.wireAt(point.wire, frame, point.x_m)];
       if (point.symbol === "steady arm") this.stroke([[x - 10, y - 7], [x, y]], "curve-3", 3);
-      pen.fillStyle = colour(point.symbol === "steady arm" ? "curve-3" : "ink");
+      const sensor = sensors.indexOf(point);
+      pen.fillStyle = colour(sensor >= 0 ? curveStyle(sensor).colour : point.symbol === "steady arm" ? "curve-3" : "ink");
       pen.beginPath();
-      pen.arc(x, y, 3, 0, 7);
+      if (sensor >= 0) pen.rect(x - 5, y - 5, 10, 10);
+      else pen.arc(x, y, point.symbol === "mass" ? 6 : 3, 0, 7);
       pen.fill();
+      if (point.symbol === "mass") this.write(point.text, x + 9, y + 14);
     }
   }
 
@@ -315,13 +317,13 @@ class PassageScene {
         this.pen.fillStyle = colour("pale");
         this.pen.fillRect(LEFT, at(upper), this.width, at(lower) - at(upper));
         for (const value of new Set([lower, upper])) this.stroke([[LEFT, at(value)], [this.width - RIGHT, at(value)]], name, 0.8, [6, 4]);
-        this.write(text, this.width - RIGHT - 4, (at(lower) + at(upper)) / 2 + 4, "soft", "right");
       }
       for (const { x, y, colour: name, width, dash, peak } of signal.curves) {
         this.stroke(Array.from(x, (time, i) => [this.atTime(time), at(y[i])]), name, width, dash);
         const highest = peak ? y.indexOf(Math.max(...y)) : -1;
-        if (peak && this.case.uplift.length < 6) this.write(peak, this.atTime(x[highest]) + 6, at(y[highest]) + 8, name);
+        if (peak && signal.curves.length < 6) this.write(peak, this.atTime(x[highest]) + 6, at(y[highest]) + 8, name);
       }
+      for (const { lower, upper, text } of signal.levels) this.writeOnPaper(text, this.width - RIGHT - 4, (at(lower) + at(upper)) / 2 + 4);
     });
   }
 
@@ -331,23 +333,10 @@ class PassageScene {
     const bottom = last.top + last.height;
     const x = this.atTime(time);
     this.stroke([[x, first.top], [x, bottom]], "link", 2);
-    const step = niceStep((this.times[1] - this.times[0]) / Math.max(2, this.width / 120));
+    const step = niceStep((this.times[1] - this.times[0]) / Math.max(4, this.width / 90));
     for (let tick = Math.ceil(this.times[0] / step) * step; tick < this.times[1]; tick += step) {
       this.write(`${formatNumber(tick, 4)} s`, this.atTime(tick), bottom + 15, "soft", "center");
       this.stroke([[this.atTime(tick), bottom], [this.atTime(tick), bottom + 4]], "soft", 1);
     }
   }
-}
-
-/** Range of values, rounded outwards. */
-function findRange(values) {
-  const [low, high] = [Math.min(...values), Math.max(...values)];
-  const step = niceStep((high - low || 1) / 4);
-  return [Math.floor(low / step) * step, Math.ceil(high / step) * step || step];
-}
-
-/** A step of 1, 2 or 5 times a power of ten that is not below a length. */
-function niceStep(length) {
-  const power = 10 ** Math.floor(Math.log10(length));
-  return [1, 2, 5, 10].map((factor) => factor * power).find((step) => step >= length * (1 - 1e-9));
 }

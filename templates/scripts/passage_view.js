@@ -1,4 +1,4 @@
-// The passage of a case as a moving picture: play, speed, step, drag, and links to an instant such as `#t=3.214`.
+// A passage, mass drops or mode shapes as moving pictures: play, speed, step, drag, and links to an instant such as `#t=3.214`.
 
 /** Speeds of the picture over that of the passage, and magnifications of the motion over the heights. */
 const SPEEDS = [1, 0.5, 0.2, 0.1, 0.02];
@@ -6,6 +6,9 @@ const GAINS = [1, 2, 5, 10, 20];
 
 /** Time between two pictures for readers who prefer less motion [ms]. */
 const STILL_MS = 500;
+
+/** Width of a picture below which it follows the first pantograph [px]. */
+const NARROW_PX = 600;
 
 /** Choice of one of several values with its label. */
 function choice(label, options, chosen, act) {
@@ -16,14 +19,17 @@ function choice(label, options, chosen, act) {
   return list;
 }
 
-/** View of the passage of a figure. */
+/** View of the moving pictures of a figure: one passage, or those of a line from which the reader chooses. */
 class PassageView {
   constructor(figure) {
     this.figure = figure;
-    this.case = caseOf(figure);
+    const shown = caseOf(figure);
+    this.motions = shown.motions ?? [shown.motion];
+    this.slider = element("input", { type: "range", "aria-label": translate("Time [s]") });
+    this.slider.addEventListener("input", () => this.pause(Number(this.slider.value)));
+    this.playing = false;
+    this.select(shown, 0);
     const { motion } = this.case;
-    const last = motion.start_s + (motion.wires[0].rise_mm.frames - 1) * motion.step_s;
-    Object.assign(this, { first: motion.start_s, last, time: motion.start_s, playing: false });
     const button = (text, label, act) => {
       const made = element("button", { type: "button", "aria-label": label, title: label }, text);
       made.addEventListener("click", act);
@@ -31,19 +37,20 @@ class PassageView {
     };
     const redraw = () => this.show(this.time);
     this.play = button("▶", translate("Play"), () => this.toggle());
-    this.speed = choice(translate("Speed"), SPEEDS.map((value) => [value, `× ${value}`]), 0.1, redraw);
-    this.gain = choice(translate("Motion over heights"), GAINS.map((value) => [value, `${translate("motion")} × ${value}`]), 5, redraw);
+    this.speed = choice(translate("Speed"), SPEEDS.map((value) => [value, `× ${value}`]), shown.speed, redraw);
+    this.gain = choice(translate("Motion over heights"), GAINS.map((value) => [value, `${translate("motion")} × ${value}`]), shown.gain, redraw);
     const parts = motion.pantographs.map((_, i) => [i + 1, fill(translate("pantograph {n}"), { n: i + 1 })]);
     this.followed = choice(translate("Shown stretch"), [[0, translate("whole stretch")], ...parts], 0, redraw);
+    const names = (shown.names ?? []).map((name, n) => [n, name]);
+    this.chosen = choice(translate("Shown motion"), names, 0, () => this.choose(Number(this.chosen.value)));
     this.tools = [
+      ...(names.length > 1 ? [this.chosen] : []),
       ...[button("|◀", translate("Step back"), () => this.step(-1)), this.play, button("▶|", translate("Step forward"), () => this.step(1))],
-      ...[this.speed, this.gain, this.followed],
-      button(translate("Smallest force"), translate("Smallest force"), () => this.showSmallest()),
+      ...[this.speed, this.gain],
+      ...(parts.length ? [this.followed, button(translate("Smallest force"), translate("Smallest force"), () => this.showSmallest())] : []),
       button(translate("Link to this instant"), translate("Link to this instant"), () => this.link()),
     ];
     this.hint = translate("Drag the picture or the curves; space plays, arrow keys step.");
-    this.slider = element("input", { type: "range", min: this.first, max: last, step: motion.step_s, "aria-label": translate("Time [s]") });
-    this.slider.addEventListener("input", () => this.pause(Number(this.slider.value)));
     this.canvas = element("canvas", { "aria-hidden": "true" });
     const label = fill(translate("Moving picture of {x}. Space plays, arrow keys step, home and end go to the ends."), { x: this.case.id });
     this.area = element("div", { class: "area scene", tabindex: "0", role: "application", "aria-label": label }, this.canvas);
@@ -54,15 +61,37 @@ class PassageView {
     this.plot = { area: this.area };
   }
 
+  /** Select a moving picture, at its first instant. */
+  select(shown, number) {
+    const motion = this.motions[number];
+    this.case = { ...shown, motion };
+    this.first = this.time = motion.start_s;
+    this.last = motion.start_s + (motion.wires[0].rise_mm.frames - 1) * motion.step_s;
+    Object.assign(this.slider, { min: this.first, max: this.last, step: motion.step_s, value: this.first });
+  }
+
+  /** Show another of the moving pictures; it goes on if one plays. */
+  async choose(number) {
+    this.select(this.case, number);
+    await this.decode();
+    this.fit();
+  }
+
+  /** Decode the picture. */
+  async decode() {
+    this.scene = new PassageScene(this.canvas, this.case, await decodePassage(this.case));
+  }
+
   /** Decode the picture, draw its first instant and bind keys and pointers. */
   async draw() {
     this.plot.canvas = this.canvas;
-    const passage = await decodePassage(this.case);
-    this.scene = new PassageScene(this.canvas, this.case, passage);
+    await this.decode();
     new ResizeObserver(() => this.fit()).observe(this.area);
-    onSchemeChange(() => this.show(this.time));
+    onSchemeChange(() => this.fit());
     this.area.addEventListener("keydown", (event) => this.press(event));
     this.area.addEventListener("pointerdown", (event) => this.drag(event));
+    // On a narrow screen the whole stretch is a comb of masts: begin with the first pantograph.
+    if (this.area.clientWidth < NARROW_PX && this.case.motion.pantographs.length) this.followed.value = 1;
     this.fit();
   }
 
@@ -76,15 +105,16 @@ class PassageView {
   show(time) {
     this.time = Math.min(Math.max(time, this.first), this.last);
     this.slider.value = this.time;
+    this.slider.setAttribute("aria-valuetext", `${formatNumber(this.time)} s`);
     if (!this.scene?.pen) return;
     const [gain, followed] = [Number(this.gain.value), Number(this.followed.value)];
     this.scene.draw(this.time, gain, followed);
     this.readout.textContent = this.describe();
     const [along, across] = this.scene.scales;
+    if (!this.scene.hasScale) return;
     const values = { n: formatNumber(across / along, 2), n2: formatNumber((gain * across) / along, 2), n3: formatNumber(this.case.motion.error_mm, 2) };
     const text = translate("Heights {n} times, motion {n2} times the scale along the track. Error of the coded wires: at most {n3} mm.");
     this.scale.textContent = fill(text, values);
-    this.slider.setAttribute("aria-valuetext", `${formatNumber(this.time)} s`);
   }
 
   /** The instant in words. */
@@ -96,8 +126,10 @@ class PassageView {
       const values = { n: i + 1, n2: formatNumber(this.scene.placeOf(part, this.time), 5), n3: formatNumber(readField(part.force, frame, 0), 3) };
       return fill(translate("pantograph {n}: {n2} m, {n3} N (0–20 Hz)"), values);
     });
-    const droppers = fill(translate("slack droppers: {n}"), { n: slack });
-    return [`t = ${this.time.toFixed(3)} s`, ...parts, droppers].join("; ");
+    const sensors = listSensors(passage).map(({ wire, x_m: place, text }) => `${text}: ${formatNumber(1000 * riseAt(wire, frame, place), 3)}`);
+    const droppers = passage.slack ? [fill(translate("slack droppers: {n}"), { n: slack })] : [];
+    const named = sensors.length ? [`${this.case.label} ${sensors.join(", ")}`] : [];
+    return [`t = ${this.time.toFixed(3)} s`, ...parts, ...named, ...droppers].join("; ");
   }
 
   /** Play, or pause. */
@@ -153,7 +185,7 @@ class PassageView {
   /** Drag: in the signals to an instant, in the views with the train. */
   drag(event) {
     const box = this.area.getBoundingClientRect();
-    const signals = event.clientY - box.top > this.scene.panels[this.scene.signals[0].key].top - 20;
+    const signals = !this.case.motion.speed_m_s || event.clientY - box.top > this.scene.panels[this.scene.signals[0].key].top - 20;
     const [start, begin] = [event.clientX, this.time];
     const [along] = this.scene.scales;
     const move = ({ clientX }) => {

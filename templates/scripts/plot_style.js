@@ -6,9 +6,14 @@ const DASHES = [[], [7, 3], [2, 2], [9, 3, 2, 3]];
 /** Number of colours of curves in the style sheet. */
 const COLOURS = 6;
 
+/** Colours that were read before, by the name of their variable, for the present scheme. */
+const colours = new Map();
+onSchemeChange(() => colours.clear());
+
 /** Colour of the style sheet by the name of its variable. */
 function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  if (!colours.has(name)) colours.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return colours.get(name);
 }
 
 /** Colour and dash of the n-th of several equal curves. */

@@ -1,11 +1,14 @@
-// Results embedded in the page, and the figures that show curves of them.
+// Results or moving pictures embedded in the page, and the figures that show curves of them.
 
-/** Results of the report: the content of results.json. */
-const results = JSON.parse(document.getElementById("pantocheck-results").textContent);
+/** Results of the report, the content of results.json, or the moving pictures of a line in place of its cases. */
+const results = JSON.parse((document.getElementById("pantocheck-results") ?? document.getElementById("pantocheck-scenes")).textContent);
 
-/** Case of the results that a figure belongs to. */
+/** What a moving picture without pantographs does not have, and what that of a passage does not state. */
+const NO_CASE = { traces: {}, uplift: [], criteria: [], run: { evaluated_m: null }, speed: 0.1, gain: 5 };
+
+/** Case of the results, or moving pictures of a line, that a figure belongs to. */
 function caseOf(figure) {
-  return results.cases[Number(figure.dataset.case)];
+  return { ...NO_CASE, ...results.cases[Number(figure.dataset.case)] };
 }
 
 /** Anchor-like name of a case for a file: letters, digits, dots and hyphens. */

@@ -3,19 +3,6 @@
 /** Points of a span on its common axis. */
 const POINTS_PER_SPAN = 240;
 
-/** Value of a curve between its points; null outside of them. */
-function interpolate(x, y, at) {
-  let low = 0;
-  let high = x.length - 1;
-  if (at < x[low] || at > x[high]) return null;
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if (x[middle] <= at) low = middle;
-    else high = middle;
-  }
-  return y[low] + ((y[high] - y[low]) * (at - x[low])) / (x[high] - x[low]);
-}
-
 /**
  * Curves of the complete spans of a section.
  *

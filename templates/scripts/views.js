@@ -1,7 +1,7 @@
 // Views in place of the static figures, and links from criteria to the places of their extremes.
 
 /** Makers of views by the curves of a figure. */
-const VIEWS = { force: (figure) => new ForceView(figure), uplift: viewUplift, measured: viewMeasured, passage: (figure) => new PassageView(figure) };
+const VIEWS = { force: (figure) => new ForceView(figure), uplift: (figure) => viewUplift(figure), measured: (figure) => viewMeasured(figure), passage: (figure) => new PassageView(figure) };
 
 /** Views of the page by the figures that they stand for. */
 const views = new Map();

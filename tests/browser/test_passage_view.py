@@ -1,9 +1,17 @@
-"""The moving picture in a browser: instants, keys, playing, dragging, less motion, and the drawn wire."""
+"""The moving picture in a browser: instants, keys, playing, dragging, less motion, the drawn wire, and its look.
 
+The stored pictures are written anew by `PANTOCHECK_STORE_PICTURES=1 pytest tests/browser/test_passage_view.py`.
+"""
+
+import io
+import os
 import re
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from helpers.example_passage import FRAMES, LOWEST_FRAME, STEP_S
 
@@ -12,6 +20,11 @@ pytestmark = pytest.mark.thorough
 FIGURE = "#case-1-passage"
 START_S = 2.0
 LAST_S = START_S + (FRAMES - 1) * STEP_S
+MODES = "#shapes-1"
+PICTURES = Path(__file__).parents[1] / "data" / "pictures"
+
+SMALLEST_FRAMES_PER_S = 20
+"""Pictures a second that a playing passage needs at least; a free machine shows 60."""
 
 
 def read_time(page: Any) -> float:
@@ -110,3 +123,65 @@ def test_picture_fits_the_width(open_page: Any, width: int) -> None:
     page = open_at(open_page, "t=2.5", width=width)
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     assert page.locator(f"{FIGURE} canvas").bounding_box()["width"] <= width
+
+
+def test_playing_picture_is_fluent(open_page: Any) -> None:
+    page = open_at(open_page)
+    rate = page.evaluate(
+        """async figure => {
+          document.querySelector(`${figure} button[title="Play"]`).click();
+          const start = performance.now();
+          let count = 0;
+          await new Promise(done => {
+            const tick = () => (++count, performance.now() - start < 1000 ? requestAnimationFrame(tick) : done());
+            requestAnimationFrame(tick);
+          });
+          return (1000 * count) / (performance.now() - start);
+        }""",
+        FIGURE,
+    )
+    assert rate > SMALLEST_FRAMES_PER_S
+
+
+def test_mode_shapes_move_one_by_one(open_page: Any) -> None:
+    """A mode of 0.92 Hz and 0.48 % begins with 100 % at a sensor; half a period later it has the opposite shape."""
+    page = open_page("identification")
+    page.locator(MODES).scroll_into_view_if_needed()
+    readout = page.locator(f"{MODES} .readout")
+    readout.filter(has_text="t = ").wait_for()
+    page.locator(f"{MODES} select").first.select_option(label="0.9200 Hz, ζ 0.4800 %, group 1")
+    page.wait_for_timeout(300)
+    first = [float(value) for value in re.findall(r": (-?[\d.]+)", readout.inner_text().replace("−", "-"))]
+    assert max(map(abs, first)) == pytest.approx(100, abs=0.1)
+    for _ in range(12):
+        page.locator(f"{MODES} .scene").press("ArrowRight")
+    second = [float(value) for value in re.findall(r": (-?[\d.]+)", readout.inner_text().replace("−", "-"))]
+    assert second == pytest.approx([-value * np.exp(-0.0048 * np.pi) for value in first], abs=0.3)
+    assert readout.inner_text().startswith(f"t = {0.5 / 0.92:.3f} s")
+
+
+def take_picture(page: Any, figure: str) -> Any:
+    """Canvas of a figure as a small picture in colours, (60, 120, 3)."""
+    shot = page.locator(f"{figure} canvas").first.screenshot()
+    return Image.open(io.BytesIO(shot)).convert("RGB").resize((120, 60), Image.Resampling.BOX)
+
+
+@pytest.mark.parametrize(
+    ("name", "width", "scheme"),
+    [("passage", 1440, "light"), ("passage", 390, "dark"), ("identification", 768, "light")],
+)
+def test_picture_looks_like_the_stored_one(open_page: Any, name: str, width: int, scheme: str) -> None:
+    """Mean difference of a colour below 4 of 255: other fonts change less; the other scheme changes more than 50."""
+    page, figure = open_page(name, width, color_scheme=scheme), FIGURE if name == "passage" else MODES
+    page.locator(figure).scroll_into_view_if_needed()
+    page.locator(f"{figure} .readout", has_text="t = ").wait_for()
+    for _ in range(4):
+        page.locator(f"{figure} .scene").press("Shift+ArrowRight")
+    taken, path = take_picture(page, figure), PICTURES / f"{name}-{width}-{scheme}.png"
+    if os.environ.get("PANTOCHECK_STORE_PICTURES"):
+        path.parent.mkdir(exist_ok=True)
+        taken.save(path, optimize=True)
+    stored = np.asarray(Image.open(path), float)
+    assert np.abs(np.asarray(taken, float) - stored).mean() < 4
+    page.emulate_media(color_scheme="dark" if scheme == "light" else "light")
+    assert np.abs(np.asarray(take_picture(page, figure), float) - stored).mean() > 50

@@ -16,6 +16,7 @@ from helpers.command_line import pantocheck
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
+from pantocheck.conformance.drops.drop_film import film_drop
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_simulation import decimate, require_mass_drop, simulate_drop
@@ -273,3 +274,23 @@ def test_impossible_campaigns_are_refused(case_path: Path, options: tuple[str, s
     assert result.exit_code == 2
     assert message in " ".join(result.output.split())
     assert not (case_path.parent / "records").exists()
+
+
+def test_moving_picture_agrees_with_the_simulated_drop(drop_case: DropCase) -> None:
+    """Rises at the sensors after the release, within the stated error and half a step of the coding (at most 1 mm)."""
+    case = load_case(drop_case({"mass_drop.record_s": 3.0}))
+    scene, decay = film_drop(case, 1), simulate_drop(case, 1).decay
+    assert scene is not None
+    [motion] = scene.motions
+    time = motion.start_s + motion.step_s * np.arange(motion.wires[0].rise_mm.frames)
+    after = (time > 0) & (time < 2.9)
+    curves = scene.line_shape.side.curves
+    for sensor, displacement in zip(require_mass_drop(case).sensor, 1e3 * decay.motion[:, :, 0], strict=True):
+        [wire] = [wire for wire in motion.wires if curves[wire.curve].kind == sensor.wire]
+        drawn = np.array([np.interp(sensor.x_m, wire.x_m, row) for row in wire.rise_mm.decode()])
+        expected = np.interp(time[after], decay.time, displacement)
+        assert np.ptp(expected) > 10
+        assert motion.error_mm is not None
+        assert_allclose(drawn[after], expected, atol=motion.error_mm + 0.5)
+    assert [point.text for point in scene.line_shape.side.points if point.symbol == "mass"] == ["40 kg"]
+    assert 0 < len(motion.model_dump_json()) <= 400_000
