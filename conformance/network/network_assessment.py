@@ -83,6 +83,7 @@ class _Findings:
     """Heap of the deviations whose traces are kept, with the index of the place."""
 
     def add_place(self, passage: SectionPassage, found: Prominence) -> None:
+        """Add a prominent place of a passage, and drop the trace of the least prominent one if there are too many."""
         place = ForcePlace(
             line=passage.section.line,
             track=passage.section.track,

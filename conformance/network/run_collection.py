@@ -168,7 +168,7 @@ def import_files(files: Sequence[Path], folder: Path, shared: Path | None) -> It
         try:
             facts, state = _import_file(path, folder, shared, (known, runs))
         except InputError as error:
-            reason = "; ".join(f"{problem.where}: {problem.found}" for problem in error.problems)
+            reason = "; ".join(f"{part.where}: {part.found}. {part.hint}".rstrip(" .") for part in error.problems)
             write_model(note, RefusedFile(file=str(path), sha256=_try_digest(path), reason=reason[:2000]))
             yield ImportedFile(str(path), "refused", (reason,))
             continue

@@ -84,7 +84,7 @@ class SourceTable(ColumnFile):
             if meaning is not None and meaning.channel.name not in SOURCE_CHANNELS:
                 yield validation_problem(
                     f"columns.{name[:80]}",
-                    "not a channel of a further source",
+                    "a further source holds uplift, position or speed only",
                     "Give it in [columns], with the file at the top of the record.",
                 )
 

@@ -120,6 +120,7 @@ def runs_assess_command(
     begin = time.monotonic()
 
     def assess(temporary: Path) -> None:
+        """Grade the runs, and write their passages into a table as they come."""
         with temporary.open("w", newline="", encoding="utf-8") as file, follow_steps("runs", len(runs)) as progress:
             table = csv.writer(file, lineterminator="\n")
             table.writerow([*PASSAGE_COLUMNS, "speed_km_h", "whole", "verdict", "reason", *NETWORK_QUANTITIES])

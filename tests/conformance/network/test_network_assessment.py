@@ -13,14 +13,14 @@ from pantocheck.conformance.cases.profile_file import Profile, load_profile
 from pantocheck.conformance.comparison.profile_grading import grade_record
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
-from pantocheck.conformance.network.network_assessment import AssessmentTask, assess_network
+from pantocheck.conformance.network.network_assessment import AssessmentTask, assess_network, judge_network
 from pantocheck.conformance.network.run_collection import import_files, list_refused, list_runs, open_collection
 from pantocheck.conformance.network.section_grading import grade_run, list_grid
 from pantocheck.conformance.network.track_places import read_places
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.network_page import build_network_page, build_run_page
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.network_format import NetworkResults
+from pantocheck.conformance.results.network_format import NetworkResults, SectionGroup
 
 pytest.importorskip("pyarrow")
 
@@ -115,6 +115,65 @@ def test_a_section_without_full_cover_does_not_pass(tmp_path: Path, profile: Pro
     remove_samples(cut, km < 11.3)
     results = assess([cut], tmp_path / "cut-runs", profile)
     assert judge_sections(results) == {10.0: "pass", 10.5: "pass", 11.0: "skip", 11.5: "skip"}
+
+
+def test_a_section_that_no_run_measured_is_skipped(tmp_path: Path, profile: Profile) -> None:
+    """The runs leave the track from 10.5 to 11 km; another one ends inside the section from 11.5 km."""
+    ends = [(10.0, 10.5), (11.0, 11.5), (11.5, 11.8)]
+    files = [write_run(tmp_path, f"run{i}", ends_km=pair, seed=i) for i, pair in enumerate(ends)]
+    results = assess(files, tmp_path / "runs", profile)
+    assert judge_sections(results) == {10.0: "pass", 10.5: "skip", 11.0: "pass", 11.5: "skip"}
+    assert {group.reason for group in results.groups if group.verdict == "skip"} == {
+        "no run measured the whole section"
+    }
+    assert [group.partial for group in results.groups] == [0, 0, 0, 1]
+    assert (results.verdict, results.measured_km, results.total_km) == ("skip", 1.0, 2.0)
+    assert results.reason == "2 of 4 sections pass; 2 of 4 sections skip"
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "refused", "expected"),
+    [
+        (["pass", "info"], 0, "pass"),
+        (["info"], 0, "info"),
+        (["pass", "skip"], 0, "skip"),
+        (["skip", "fail"], 0, "fail"),
+        (["pass", "pass"], 1, "skip"),
+        (["info"], 1, "skip"),
+        (["unconfirmed"], 1, "skip"),
+        (["pass", "fail"], 1, "fail"),
+        (["error"], 1, "error"),
+    ],
+)
+def test_a_refused_file_lowers_the_verdict_and_hides_no_failure(
+    verdicts: list[str], refused: int, expected: str
+) -> None:
+    groups = [SectionGroup.model_construct(verdict=verdict) for verdict in verdicts]
+    verdict, reason = judge_network(groups, [object()] * refused)
+    assert verdict == expected
+    assert ("1 files refused" in reason) == bool(refused)
+
+
+def test_a_verdict_counts_for_its_class_and_an_incomplete_passage_for_every_speed(
+    tmp_path: Path, profile: Profile
+) -> None:
+    """A run of 200 km/h fails; one whose record ends early has no speed, and is skipped in both classes of speed."""
+    fast = write_run(tmp_path, "fast", ends_km=(10.0, 11.0))
+    slow = write_run(tmp_path, "slow", ends_km=(11.0, 10.0), day=2, speed_km_h=200.0, mean=130.0, seed=1)
+    cut = write_run(tmp_path, "cut", ends_km=(10.0, 11.0), day=3, seed=2)
+    sidecar = cut.with_suffix(".toml")
+    sidecar.write_text("evaluated_m = [0.0, 999.0]\n" + sidecar.read_text(encoding="utf-8"), encoding="utf-8")
+    km = np.linspace(10.0, 11.0, len(cut.read_text(encoding="utf-8").splitlines()) - 1)
+    remove_samples(cut, km < 10.7)
+    found: dict[tuple[str, ...], dict[object, str]] = {}
+    for by in [(), ("speed",), ("direction",), ("speed", "direction")]:
+        results = assess([fast, slow, cut], tmp_path / "runs", profile, by=by)
+        later = [group for group in results.groups if group.section.from_km == 10.5]
+        found[by] = {(group.speed_km_h and group.speed_km_h[0], group.direction): group.verdict for group in later}
+    assert found[()] == {(None, None): "fail"}
+    assert found["speed",] == {(200.0, None): "fail", (250.0, None): "skip"}
+    assert found["direction",] == {(None, "increasing"): "skip", (None, "decreasing"): "fail"}
+    assert found["speed", "direction"] == {(200.0, "decreasing"): "fail", (250.0, "increasing"): "skip"}
 
 
 def test_less_information_improves_no_verdict(tmp_path: Path, profile: Profile) -> None:

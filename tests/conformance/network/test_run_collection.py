@@ -1,5 +1,8 @@
 """Collections: every number of a file is kept, a measurement is one run, and nothing is lost silently."""
 
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +11,7 @@ import pytest
 from helpers.measured_runs import write_run
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn, read_tables
+from pantocheck.conformance.grading.assessed_record import hash_force
 from pantocheck.conformance.network import run_collection
 from pantocheck.conformance.network.run_collection import (
     ImportedFile,
@@ -102,6 +106,39 @@ def test_an_interrupted_import_keeps_its_runs_and_is_resumed(tmp_path: Path, mon
     assert len(list(list_runs(tmp_path / "runs"))) == 1
     assert [item.state for item in collect(files, tmp_path / "runs")] == ["known", "imported", "imported"]
     assert list_bytes(tmp_path / "runs") == list_bytes(tmp_path / "whole")
+
+
+IMPORT = """
+import sys
+from pathlib import Path
+from pantocheck.conformance.network.run_collection import import_files, open_collection
+files, folder = [Path(name) for name in sys.argv[2:]], Path(sys.argv[1])
+with open_collection(folder):
+    print("begin", flush=True)
+    for item in import_files(files, folder, None):
+        print(item.state, flush=True)
+"""
+
+
+def test_an_import_killed_at_random_times_loses_and_doubles_nothing(tmp_path: Path) -> None:
+    """Killed five times within 0.3 s of its start: each listed run is whole, and the next import adds the others."""
+    files = [write_run(tmp_path, f"run{i}", ends_km=(10.0, 10.3), seed=i) for i in range(8)]
+    collect(files, tmp_path / "whole")
+    random, runs, killed = np.random.default_rng(37), tmp_path / "runs", 0
+    for delay in random.uniform(0.0, 0.3, 5):
+        command = [sys.executable, "-c", IMPORT, str(runs), *map(str, files)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "begin\n"
+            time.sleep(delay)
+            process.kill()
+        killed += process.returncode != 0
+        for run in list_runs(runs):
+            assert hash_force(read_samples(run.sidecar)[0])[:16] == run.facts.run
+    assert killed
+    states = [item.state for item in collect(files, runs)]
+    assert set(states) <= {"known", "imported"}
+    assert list_bytes(runs) == list_bytes(tmp_path / "whole")
 
 
 def test_files_without_a_sidecar_share_one_and_suspicions_are_kept(tmp_path: Path) -> None:

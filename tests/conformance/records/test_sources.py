@@ -352,7 +352,7 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
     ),
     "force": (
         edit_keys({"source.0.columns.force_1_N": {"column": "Anhub Mast 1 [mm]"}}),
-        ("source[1].columns.force_1_N", "not a channel of a further source"),
+        ("source[1].columns.force_1_N", "holds uplift, position or speed only"),
     ),
     "repeated": (
         edit_keys({"columns.uplift_1_m": {"column": "Weg [m]"}}),
