@@ -1,35 +1,40 @@
 """Assessment of a collection: passages over every section, their verdicts, repeats and worst places."""
 
-import heapq
+import tempfile
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import groupby
+from pathlib import Path
 
 import numpy as np
 from scipy.special import stdtrit
 
 from pantocheck.conformance.cases.profile_file import Profile
-from pantocheck.conformance.core.figure_data import Series
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.rounding import round_digits
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict, judge_parts, worst_verdict
 from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.network.run_collection import RefusedFile, StoredRun
 from pantocheck.conformance.network.section_grading import (
     NETWORK_QUANTITIES,
-    Prominence,
     grade_run,
     list_grid,
 )
-from pantocheck.conformance.network.track_places import find_known_place, list_tension_sections
+from pantocheck.conformance.network.track_comparison import (
+    SPEED_CLASS_KM_H,
+    ForceProfile,
+    compare_passages,
+    write_profiles,
+)
+from pantocheck.conformance.network.track_places import list_tension_sections
 from pantocheck.conformance.network.unusual_values import GroupedPassages, find_unusual
 from pantocheck.conformance.results.network_format import (
     Direction,
     ForcePlace,
     GroupKey,
     KnownPlace,
+    MisplacedRun,
     NetworkResults,
     RefusedImport,
     RepeatedValue,
@@ -39,17 +44,11 @@ from pantocheck.conformance.results.network_format import (
     UnusualValue,
 )
 
-SPEED_CLASS_KM_H = 10.0
-"""Width of a class of speeds [km/h]."""
-
-SAME_PLACE_KM = 0.03
-"""Largest distance of two deviations that belong to one place [km]: half a span."""
-
 WORST_PLACES = 100
 """Number of places whose force is kept."""
 
-TRACE_POINTS = 300
-"""Largest number of points of such a force."""
+MISPLACED = "the force is that of another place"
+"""Reason of a passage that does not pass because its run is misplaced."""
 
 FEWEST_FOR_DRIFT, FEWEST_DATES = 4, 3
 """Smallest number of passages and of dates for a drift."""
@@ -71,46 +70,8 @@ class AssessmentTask:
     length_km: float
     """Length of a section where no tension sections are known [km]."""
     known_places: tuple[KnownPlace, ...] = ()
-
-
-@dataclass
-class _Findings:
-    """Passages and places of the runs that are graded so far; samples and traces of most places are not kept."""
-
-    passages: list[SectionPassage] = field(default_factory=list)
-    places: list[ForcePlace] = field(default_factory=list)
-    traced: list[tuple[float, int]] = field(default_factory=list)
-    """Heap of the deviations whose traces are kept, with the index of the place."""
-
-    def add_place(self, passage: SectionPassage, found: Prominence) -> None:
-        """Add a prominent place of a passage, and drop the trace of the least prominent one if there are too many."""
-        place = ForcePlace(
-            line=passage.section.line,
-            track=passage.section.track,
-            km=round(found.km, 4),
-            run=passage.run,
-            date=passage.date,
-            direction=passage.direction,
-            pantograph=passage.pantograph,
-            force_N=round(found.force, 2),
-            deviation=round(found.deviation, 2),
-            found=1,
-            passages=1,
-            place="",
-            explained=False,
-            trace=_thin(found),
-        )
-        self.places.append(place)
-        heapq.heappush(self.traced, (abs(place.deviation), len(self.places) - 1))
-        if len(self.traced) > 4 * WORST_PLACES:  # several runs show the same place
-            _, index = heapq.heappop(self.traced)
-            self.places[index] = self.places[index].model_copy(update={"trace": None})
-
-
-def _thin(found: Prominence) -> Series:
-    step = max(1, -(-found.trace.size // TRACE_POINTS))
-    x, y = (round_digits(values[::step], 6) for values in (found.trace_km, found.trace))
-    return Series(label="filtered force", style="line", x=x, y=y)
+    scratch: Path | None = None
+    """Folder for the forces of one track; None: that of temporary files."""
 
 
 def assess_network(
@@ -119,41 +80,49 @@ def assess_network(
     task: AssessmentTask,
     report: Callable[[StoredRun, list[SectionPassage]], None],
 ) -> NetworkResults:
-    """Grade every section of a collection; one run at a time is in memory.
+    """Grade every section of a collection; the samples of one run are in memory at a time.
 
     Args:
         runs: Runs in the order of line and track.
         refused: Files that were refused.
         task: Rules and grouping.
-        report: Function that receives the passages of each run when it is graded.
+        report: Function that receives the passages of each run when its track is graded.
 
     Raises:
         InputError: There is no run, or the files of one are damaged.
     """
-    found, sections, suspicious, count = _Findings(), list[TrackSection](), dict[str, tuple[str, ...]](), 0
+    groups: list[SectionGroup] = []
+    places: list[ForcePlace] = []
+    misplaced: list[MisplacedRun] = []
+    unusual: list[UnusualValue] = []
+    suspicious, runs_read, passages_read = dict[str, tuple[str, ...]](), 0, 0
     for (line, track), part in groupby(runs, key=lambda run: (run.facts.line, run.facts.track)):
         here = list(part)
         own = list_tension_sections(task.known_places, line, track)
         ends = [(min(x.facts.from_km, x.facts.to_km), max(x.facts.from_km, x.facts.to_km)) for x in here]
         own = own or list_grid(line, track, ends, task.length_km)
-        sections += own
-        for run in here:
-            graded = list(grade_run(run, own, task.profile, task.trust))
-            for item in graded:
-                for prominence in item.places:
-                    found.add_place(item.passage, prominence)
-            passages = [item.passage for item in graded]
-            found.passages += passages
-            count += 1
-            if run.facts.remarks:
-                suspicious[run.facts.run] = run.facts.remarks
-            report(run, passages)
-    if not count:
+        passages: list[list[SectionPassage]] = []
+        with tempfile.TemporaryDirectory(dir=task.scratch) as scratch:
+            profiles: list[ForceProfile] = []
+            for run in here:
+                graded = list(grade_run(run, own, task.profile, task.trust))
+                profiles += write_profiles(graded, task.known_places, Path(scratch))
+                passages.append([item.passage for item in graded])
+            found, wrong = compare_passages(profiles, task.known_places)
+        suspicious |= {run.facts.run: run.facts.remarks for run in here if run.facts.remarks}
+        for run, items in zip(here, passages, strict=True):
+            items[:] = _lower_misplaced(items, wrong)
+            report(run, items)
+        rows = _group([passage for items in passages for passage in items], own, task.by)
+        groups += [group for group, _ in rows]
+        places = _keep_worst(places + found)
+        misplaced += wrong
+        unusual += _compare_sections(rows)
+        runs_read, passages_read = runs_read + len(here), passages_read + sum(map(len, passages))
+    if not runs_read:
         raise InputError("collection", "has no run", "Import files: pantocheck runs import FILE ... --out DIR.")
-    rows = _group(found.passages, sections, task.by)
-    groups = [group for group, _ in rows]
     verdict, reason = judge_network(groups, refused)
-    lengths = {_key(section): section.to_km - section.from_km for section in sections}
+    lengths = {_key(group.section): group.section.to_km - group.section.from_km for group in groups}
     measured = {_key(group.section) for group in groups if group.passages}
     return NetworkResults(
         suite=build_suite(),
@@ -162,17 +131,45 @@ def assess_network(
         by=task.by,
         verdict=verdict,
         reason=reason,
-        runs=count,
-        passages=len(found.passages),
+        runs=runs_read,
+        passages=passages_read,
         measured_km=round(sum(lengths[key] for key in measured), 6),
         total_km=round(sum(lengths.values()), 6),
         groups=tuple(groups),
-        places=tuple(_join_places(found, task.known_places)),
-        unusual=tuple(_compare_sections(rows)),
+        places=tuple(places),
+        misplaced=tuple(misplaced),
+        unusual=tuple(unusual),
         known_places=task.known_places,
         refused=tuple(RefusedImport(file=item.file, reason=item.reason) for item in refused),
         suspicious=suspicious,
     )
+
+
+def _keep_worst(places: Sequence[ForcePlace]) -> list[ForcePlace]:
+    """Places with the worst one first; traces of the first hundred."""
+    ordered = sorted(places, key=lambda x: (-abs(x.deviation) / x.threshold, x.line, x.track, x.km))
+    rest = ordered[WORST_PLACES:]
+    return [*ordered[:WORST_PLACES], *(place.model_copy(update={"trace": None}) for place in rest)]
+
+
+def _lower_misplaced(passages: Sequence[SectionPassage], misplaced: Sequence[MisplacedRun]) -> list[SectionPassage]:
+    """Passages of a run, of which none passes where the run is misplaced."""
+    return [
+        passage.model_copy(
+            update={
+                "verdict": worst_verdict([passage.verdict, "skip"]),
+                "reason": "; ".join(filter(None, (MISPLACED, passage.reason))),
+            }
+        )
+        if any(_lies_in(passage, stretch) for stretch in misplaced)
+        else passage
+        for passage in passages
+    ]
+
+
+def _lies_in(passage: SectionPassage, stretch: MisplacedRun) -> bool:
+    overlaps = passage.section.from_km < stretch.to_km and passage.section.to_km > stretch.from_km
+    return overlaps and (passage.run, passage.pantograph) == (stretch.run, stretch.pantograph)
 
 
 def judge_network(groups: Sequence[SectionGroup], refused: Sequence[object]) -> tuple[Verdict, str]:
@@ -280,36 +277,3 @@ def _repeat(pairs: Sequence[tuple[int, float]]) -> RepeatedValue:
         drift=drift,
         drifts=drifts,
     )
-
-
-def _join_places(found: _Findings, known: Sequence[KnownPlace]) -> Iterator[ForcePlace]:
-    """Places with the deviations that lie close to each other, the worst first; traces of the first hundred."""
-    passed = defaultdict[tuple[str, str], list[TrackSection]](list)
-    for passage in found.passages:
-        if passage.speed_km_h is not None:
-            passed[passage.section.line, passage.section.track].append(passage.section)
-    clusters: list[list[ForcePlace]] = []
-    for place in sorted(found.places, key=lambda x: (x.line, x.track, x.km, x.run, x.pantograph)):
-        last = clusters[-1][-1] if clusters else None
-        near = last is not None and (last.line, last.track) == (place.line, place.track)
-        if near and last is not None and place.km - last.km <= SAME_PLACE_KM:
-            clusters[-1].append(place)
-        else:
-            clusters.append([place])
-    joined = [_join(cluster, passed, known) for cluster in clusters]
-    joined.sort(key=lambda x: (-abs(x.deviation), x.line, x.track, x.km))
-    for rank, place in enumerate(joined):
-        yield place if rank < WORST_PLACES else place.model_copy(update={"trace": None})
-
-
-def _join(
-    cluster: Sequence[ForcePlace],
-    passed: Mapping[tuple[str, str], Sequence[TrackSection]],
-    known: Sequence[KnownPlace],
-) -> ForcePlace:
-    worst = max(cluster, key=lambda place: abs(place.deviation))
-    passages = sum(x.from_km <= worst.km < x.to_km for x in passed[worst.line, worst.track])
-    name, explained = find_known_place(known, worst.line, worst.track, worst.km)
-    shown = len({(place.run, place.pantograph) for place in cluster})
-    changes = {"found": shown, "passages": max(passages, shown), "place": name, "explained": explained}
-    return worst.model_copy(update=changes)

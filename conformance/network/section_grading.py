@@ -1,6 +1,7 @@
 """Grading of one run by sections of its track: the same rules and signals as the assessment of a record."""
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -15,7 +16,6 @@ from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.network.run_collection import StoredRun
 from pantocheck.conformance.quantities.evaluation import LINE, ValuesByOwner
-from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.quantities.uncertainty import Uncertainty
 from pantocheck.conformance.records.record import RecordInvalid
@@ -41,37 +41,15 @@ MARGIN_S, MARGIN_M = 3.0, 200.0
 After 3 s the response of a filter at 20 Hz has decayed by more than sixteen digits.
 """
 
-PROMINENT_HIGH, PROMINENT_LOW = 4.0, -2.45
-"""Deviations beyond which a place is listed, in robust standard deviations of their side of the median.
-
-Chosen on simulated lines (`verification/tables/network_detection.py`, seed 1): without a defect, 1.1 km of the line AC
-simple at 275 km/h have at most 3.6 and at least -2.3.
-"""
-
-TRACE_M = 80.0
-"""Track on either side of a place whose force is kept [m]."""
-
-
-@dataclass(frozen=True)
-class Prominence:
-    """Largest deviation of the force of a passage to one side."""
-
-    km: float
-    force: float
-    """Filtered force [N]."""
-    deviation: float
-    """Difference from the median in robust standard deviations; negative for a low force."""
-    trace_km: RealArray
-    trace: RealArray
-    """Kilometre and filtered force around the place, (n,) [km, N]."""
-
 
 @dataclass(frozen=True)
 class GradedPassage:
-    """Passage over a section with its prominent places."""
+    """Passage over a section with its force."""
 
     passage: SectionPassage
-    places: tuple[Prominence, ...]
+    km: RealArray
+    force: RealArray
+    """Kilometre and filtered force, in running order, (n,) [km, N]; empty if the force is not known."""
     all_values: ValuesByOwner
     """All quantities, by pantograph (0: the line)."""
 
@@ -131,12 +109,14 @@ def grade_run(
                 reason=reason,
                 values={},
             )
-            places: tuple[Prominence, ...] = ()
+            km = force = np.empty(0)
             if subject is not None and subject.prepared is not None:
                 passage = _judge(passage, [c for c in criteria if c.pantograph in (LINE, number)], profile, values)
                 signals = subject.prepared.pantographs[number]
-                places = tuple(find_prominences(signals, track.zero_km, track.direction))
-            yield GradedPassage(passage, places, values)
+                with suppress(QuantityUnavailable):
+                    force, place = signals.graded, signals.position[signals.inside]
+                    km = track.zero_km + track.direction * place / 1000
+            yield GradedPassage(passage, km, force, values)
 
 
 def _is_regular(time: RealArray) -> bool:
@@ -211,28 +191,6 @@ def _judge(
             "values": {name: x for name in NETWORK_QUANTITIES if isinstance(x := found.get(name), float)},
         }
     )
-
-
-def find_prominences(signals: PantographSignals, zero_km: float, direction: float) -> Iterator[Prominence]:
-    """Places of the force furthest above and below its median in the section, if they are prominent.
-
-    Args:
-        signals: Signals of one pantograph over the section.
-        zero_km: Kilometre of the line at x = 0.
-        direction: 1 if the kilometres increase in running direction, else -1.
-    """
-    try:
-        force, position = signals.graded, signals.position[signals.inside]
-    except QuantityUnavailable:
-        return
-    low, middle, high = np.quantile(force, (0.159, 0.5, 0.841))
-    kilometre = zero_km + direction * position / 1000
-    for find, scale in ((np.argmax, high - middle), (np.argmin, middle - low)):
-        index = int(find(force))
-        deviation = float((force[index] - middle) / scale) if scale > 0 else 0.0
-        if not PROMINENT_LOW < deviation < PROMINENT_HIGH:
-            near = np.abs(position - position[index]) <= TRACE_M
-            yield Prominence(float(kilometre[index]), float(force[index]), deviation, kilometre[near], force[near])
 
 
 def list_grid(line: str, track: str, ends: Sequence[tuple[float, float]], length_km: float) -> list[TrackSection]:

@@ -4,6 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import get_args
 
+import numpy as np
+
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.spreadsheet import read_spreadsheet
 from pantocheck.conformance.line.line_columns import POSITION, SUPPORT_COLUMNS, TypedRow, read_typed_rows
@@ -72,6 +75,11 @@ def list_tension_sections(places: Sequence[KnownPlace], line: str, track: str) -
         TrackSection(line=line, track=track, name=x.name, from_km=x.from_km, to_km=x.to_km)
         for x in sorted(found, key=lambda x: (x.from_km, x.to_km))
     ]
+
+
+def list_support_kilometres(places: Sequence[KnownPlace], line: str, track: str) -> RealArray:
+    """Kilometres of the supports of a track in increasing order, (n,) [km]."""
+    return np.unique([x.from_km for x in places if (x.line, x.track, x.kind) == (line, track, "support")])
 
 
 def find_known_place(places: Sequence[KnownPlace], line: str, track: str, km: float) -> tuple[str, bool]:

@@ -18,8 +18,8 @@ COMPARED = ("mean_force_N", "std_force_N")
 FEWEST_SECTIONS, FEWEST_PASSAGES = 8, 3
 """Smallest number of sections of a track, and of passages over a section, of which one can be unusual."""
 
-UNUSUAL_DEVIATION = 6.0
-"""Smallest deviation that is listed, in robust standard deviations."""
+UNUSUAL_DEVIATION = 4.5
+"""Smallest deviation that is listed, in robust standard deviations: seven of a million Gaussian values exceed it."""
 
 LEAST_SCALE_SHARE = 0.01
 """Smallest robust standard deviation over the expected value: differences of 1 % are never unusual."""

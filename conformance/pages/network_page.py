@@ -11,6 +11,7 @@ from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import clean_text, clean_tree, format_value, quantity_label, quantity_unit
 from pantocheck.conformance.results.network_format import (
     ForcePlace,
+    MisplacedRun,
     NetworkResults,
     SectionGroup,
     SectionPassage,
@@ -46,6 +47,8 @@ def build_network_page(results: NetworkResults) -> doc.Document:
         traced = [place for place in results.places if place.trace is not None]
         drawn = doc.Section("Force at the worst places", (doc.Figures(tuple(map(_draw_place, traced))),), folded=True)
         blocks.append(doc.Section("Worst places", (_tabulate_places(results.places), drawn)))
+    if results.misplaced:
+        blocks.append(doc.Section("Misplaced runs", (_tabulate_misplaced(results.misplaced),)))
     if results.unusual:
         blocks.append(doc.Section("Unusual values", (_tabulate_unusual(results.unusual),)))
     blocks.append(doc.Section("Sections", (_tabulate_groups(results.groups),)))
@@ -141,6 +144,8 @@ def _tabulate_places(places: Sequence[ForcePlace]) -> doc.Table:
         doc.Column("km", number=True): lambda x: f"{x.km:.3f}",
         doc.Column("Force N", number=True): lambda x: format_value(x.force_N),
         doc.Column("Deviation", number=True): lambda x: f"{x.deviation:.1f}",
+        doc.Column("Threshold", number=True): lambda x: f"{x.threshold:.1f}",
+        doc.Column("Extent m", number=True): lambda x: f"{x.extent_m:g}",
         doc.Column("Seen in"): lambda x: f"{x.found} of {x.passages}",
         doc.Column("Date"): lambda x: str(x.date),
         doc.Column("Pantograph"): lambda x: x.pantograph,
@@ -148,8 +153,23 @@ def _tabulate_places(places: Sequence[ForcePlace]) -> doc.Table:
         doc.Column("Explained"): lambda x: "yes" if x.explained else "no",
         doc.Column("Run"): lambda x: _link_run(x.run),
     }
-    caption = "Deviation of the filtered force from the median of its section, in robust standard deviations"
+    caption = "Deviation of the filtered force from the neighbouring spans, in robust standard deviations"
     return doc.make_table(places, cells, caption)
+
+
+def _tabulate_misplaced(runs: Sequence[MisplacedRun]) -> doc.Table:
+    cells = {
+        doc.Column("Line"): lambda x: x.line,
+        doc.Column("Track"): lambda x: x.track,
+        doc.Column("Section"): lambda x: f"{x.from_km:.3f} to {x.to_km:.3f} km",
+        doc.Column("Pantograph"): lambda x: x.pantograph,
+        doc.Column("Offset m", number=True): lambda x: "–" if x.offset_m is None else f"{x.offset_m:.1f}",
+        doc.Column("Clock s", number=True): lambda x: "–" if x.offset_s is None else f"{x.offset_s:.2f}",
+        doc.Column("Agreement", number=True): lambda x: f"{x.agreement:.2f}",
+        doc.Column("Run"): lambda x: _link_run(x.run),
+    }
+    caption = "Wrong kilometre, or clock with this error; without an offset, the force is that of another line or place"
+    return doc.make_table(runs, cells, caption)
 
 
 def _tabulate_unusual(values: Sequence[UnusualValue]) -> doc.Table:

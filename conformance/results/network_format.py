@@ -100,7 +100,7 @@ class KnownPlace(ResultsPart):
 
 
 class ForcePlace(ResultsPart):
-    """Place where the force deviates from that of its section, in one run or several."""
+    """Place where the force differs from that of the neighbouring spans, in one run or several."""
 
     line: str
     track: str
@@ -113,17 +113,37 @@ class ForcePlace(ResultsPart):
     force_N: FiniteNumber
     """Filtered force."""
     deviation: FiniteNumber
-    """Difference from the median of the section, in robust standard deviations."""
+    """Mean difference from the neighbouring spans over the extent, in robust standard deviations of such means."""
+    threshold: FiniteNumber
+    """Deviation from which a place is listed."""
+    extent_m: FiniteNumber
     found: int
-    """Passages that show a deviation here."""
+    """Passages that show the deviation by themselves; 0: only the mean of several shows it."""
     passages: int
-    """Passages over the section."""
+    """Passages over the place."""
     place: str
     """Nearest known place; empty if none is near."""
     explained: bool
     """Whether the place is an overlap, section insulator, neutral section or switch."""
     trace: Series | None = None
     """Filtered force by kilometre around the place; null outside the worst places."""
+
+
+class MisplacedRun(ResultsPart):
+    """Stretch of a run whose force is not that of the other passages at the same kilometre."""
+
+    line: str
+    track: str
+    run: str
+    pantograph: str
+    from_km: FiniteNumber
+    to_km: FiniteNumber
+    offset_m: FiniteNumber | None
+    """Kilometre of this run less that of the others at the same force; null: it agrees with them nowhere."""
+    offset_s: FiniteNumber | None
+    """Error of a clock that explains the offset."""
+    agreement: FiniteNumber
+    """Correlation with the mean of the others at this offset [-]."""
 
 
 class UnusualValue(ResultsPart):
@@ -167,7 +187,8 @@ class NetworkResults(ResultsPart):
     """Length of all sections."""
     groups: tuple[SectionGroup, ...]
     places: tuple[ForcePlace, ...]
-    """From the largest deviation to the smallest."""
+    """From the largest deviation over its threshold to the smallest."""
+    misplaced: tuple[MisplacedRun, ...]
     unusual: tuple[UnusualValue, ...]
     known_places: tuple[KnownPlace, ...]
     refused: tuple[RefusedImport, ...]

@@ -18,19 +18,26 @@ def write_run(
     mean: float = 100.0,
     dip_km: float | None = None,
     wide_km: tuple[float, float] = (0.0, 0.0),
+    rough_N: float = 0.0,
+    shift_km: float = 0.0,
     seed: int = 0,
 ) -> Path:
     """Write a German logger file (kN, decimal comma) with its sidecar; the kilometres run from the first to the last.
 
     The force has a sigma of 20 N by spans of 50 m and noise; a dip of 150 N and 2 m is a broken dropper;
-    between `wide_km` the sigma is 30 N.
+    between `wide_km` the sigma is 30 N. A rough line adds the same random force to every run. The kilometres of the
+    file are too high by `shift_km`.
     """
     random = np.random.default_rng((37, seed))
     begin, end = ends_km
     time = np.arange(0, 3600 * abs(end - begin) / speed_km_h, 1 / RATE)
     km = begin + np.sign(end - begin) * speed_km_h / 3600 * time
     swing = np.where((km >= wide_km[0]) & (km < wide_km[1]), 42.0, 28.0)
-    force = mean + swing * np.sin(2 * np.pi * km / 0.05) + random.normal(0, 3, time.size)
+    true_km = km - shift_km
+    force = mean + swing * np.sin(2 * np.pi * true_km / 0.05) + random.normal(0, 3, time.size)
+    if rough_N:
+        marks = np.arange(8.0, 25.0, 0.003)
+        force += np.interp(true_km, marks, rough_N * np.random.default_rng(37).standard_normal(marks.size))
     if dip_km is not None:
         force -= 150 * np.exp(-((1000 * (km - dip_km)) ** 2) / 8)
     rows = np.column_stack([time, km, force / 1000])

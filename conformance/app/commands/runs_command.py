@@ -114,6 +114,7 @@ def runs_assess_command(
         by=tuple(key for key in get_args(GroupKey) if key in keys),
         length_km=section_km,
         known_places=tuple(place for path in assets or () for place in read_places(path, *single)),
+        scratch=out,
     )
     check_writable(out)
     out.mkdir(parents=True, exist_ok=True)

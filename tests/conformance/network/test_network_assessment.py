@@ -157,9 +157,9 @@ def test_a_refused_file_lowers_the_verdict_and_hides_no_failure(
 def test_a_verdict_counts_for_its_class_and_an_incomplete_passage_for_every_speed(
     tmp_path: Path, profile: Profile
 ) -> None:
-    """A run of 200 km/h fails; one whose record ends early has no speed, and is skipped in both classes of speed."""
+    """One run ends early: it has no speed, and is skipped in both classes of speed, but in its own direction only."""
     fast = write_run(tmp_path, "fast", ends_km=(10.0, 11.0))
-    slow = write_run(tmp_path, "slow", ends_km=(11.0, 10.0), day=2, speed_km_h=200.0, mean=130.0, seed=1)
+    slow = write_run(tmp_path, "slow", ends_km=(11.0, 10.0), day=2, speed_km_h=200.0, seed=1)
     cut = write_run(tmp_path, "cut", ends_km=(10.0, 11.0), day=3, seed=2)
     sidecar = cut.with_suffix(".toml")
     sidecar.write_text("evaluated_m = [0.0, 999.0]\n" + sidecar.read_text(encoding="utf-8"), encoding="utf-8")
@@ -170,10 +170,10 @@ def test_a_verdict_counts_for_its_class_and_an_incomplete_passage_for_every_spee
         results = assess([fast, slow, cut], tmp_path / "runs", profile, by=by)
         later = [group for group in results.groups if group.section.from_km == 10.5]
         found[by] = {(group.speed_km_h and group.speed_km_h[0], group.direction): group.verdict for group in later}
-    assert found[()] == {(None, None): "fail"}
-    assert found["speed",] == {(200.0, None): "fail", (250.0, None): "skip"}
-    assert found["direction",] == {(None, "increasing"): "skip", (None, "decreasing"): "fail"}
-    assert found["speed", "direction"] == {(200.0, "decreasing"): "fail", (250.0, "increasing"): "skip"}
+    assert found[()] == {(None, None): "skip"}
+    assert found["speed",] == {(200.0, None): "skip", (250.0, None): "skip"}
+    assert found["direction",] == {(None, "increasing"): "skip", (None, "decreasing"): "pass"}
+    assert found["speed", "direction"] == {(200.0, "decreasing"): "pass", (250.0, "increasing"): "skip"}
 
 
 def test_less_information_improves_no_verdict(tmp_path: Path, profile: Profile) -> None:
@@ -232,16 +232,17 @@ def test_a_section_and_a_passage_that_differ_are_named(tmp_path: Path, profile: 
 def test_a_place_has_a_name_and_the_page_escapes_it(tmp_path: Path, profile: Profile) -> None:
     files = [
         write_run(tmp_path, f"run{day}", ends_km=ends, day=day, seed=day, dip_km=10.733)
-        for day, ends in enumerate([(10.0, 11.0), (11.0, 10.0), (10.0, 11.0)], 1)
+        for day, ends in enumerate([(10.0, 12.5), (12.5, 10.0), (10.0, 12.5)], 1)
     ]
     table = tmp_path / "places.csv"
     rows = ["kind,name,x_km,from_km,to_km", "support,<b>17</b>,10.72,,", "overlap,U7,,10.2,10.25"]
-    table.write_text("\n".join([*rows, "tension_section,N4,,10.0,11.0"]) + "\n", encoding="utf-8")
+    table.write_text("\n".join([*rows, "tension_section,N4,,10.0,12.5"]) + "\n", encoding="utf-8")
     known = tuple(read_places(table, "1700", "2"))
     results = assess(files, tmp_path / "runs", profile, known_places=known)
     assert {group.section.name for group in results.groups} == {"N4"}
     (place,) = results.places
-    assert place.km == pytest.approx(10.733, abs=0.001)
+    assert place.km == pytest.approx(10.733, abs=0.002)  # the samples are 0.5 m apart, the mean is over 3 m or more
+    assert place.deviation < -place.threshold
     assert (place.found, place.passages, place.place, place.explained) == (3, 3, "support <b>17</b>", False)
     at_overlap = tuple(x.model_copy(update={"from_km": 10.7, "to_km": 10.73}) if x.name == "U7" else x for x in known)
     assert assess(files, tmp_path / "runs", profile, known_places=at_overlap).places[0].explained
@@ -255,6 +256,30 @@ def test_a_place_has_a_name_and_the_page_escapes_it(tmp_path: Path, profile: Pro
     )
     page = render_html(build_run_page(place.run, [item.passage for item in graded]))
     assert "10.000 to 11.000" in page
+
+
+def test_a_run_with_wrong_kilometres_is_named_and_passes_nothing(tmp_path: Path, profile: Profile) -> None:
+    """Of four runs over a rough line, one has kilometres that are 120 m too high, or 1.73 s late at 250 km/h."""
+    files = [
+        write_run(
+            tmp_path, f"run{day}", ends_km=(10.0, 13.0), day=day, seed=day, rough_N=8.0, shift_km=0.12 * (day == 2)
+        )
+        for day in (1, 2, 3, 4)
+    ]
+    results = assess(files, tmp_path / "runs", profile)
+    (run,) = [run.facts.run for run in list_runs(tmp_path / "runs") if run.facts.date.day == 2]
+    assert {part.run for part in results.misplaced} == {run}
+    assert sum(part.to_km - part.from_km for part in results.misplaced) == pytest.approx(3.0, abs=0.01)
+    for part in results.misplaced:
+        assert part.offset_m == pytest.approx(120.0, abs=0.5)  # one sample of the grid
+        assert part.offset_s == pytest.approx(1.728, abs=0.01)
+    assert {(group.verdict, group.run) for group in results.groups} == {("skip", run)}
+    assert {group.reason for group in results.groups} == {"the force is that of another place"}
+    assert not assess([files[0], *files[2:]], tmp_path / "right", profile).misplaced
+    page = render_html(build_network_page(results))
+    assert "Misplaced runs" in page
+    # Two runs do not tell which of them is misplaced.
+    assert not assess(files[:2], tmp_path / "two", profile).misplaced
 
 
 def test_results_do_not_depend_on_the_order_of_the_import(tmp_path: Path, profile: Profile) -> None:
