@@ -14,10 +14,10 @@ CODE = {".py", ".c", ".h", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
-    ("model", "conformance"): 88_650,
-    ("templates",): 4_600,
-    ("verification",): 20_100,
-    ("tests",): 59_250,
+    ("model", "conformance"): 89_560,
+    ("templates",): 4_680,
+    ("verification",): 20_300,
+    ("tests",): 59_750,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
@@ -30,7 +30,7 @@ commit, states the reason there, and adds at most 1,800 lines to the product, 1,
 `verification/`.
 """
 
-MOST_WORDS = 79_500
+MOST_WORDS = 79_900
 """Largest number of words in the pages of `docs/`."""
 
 

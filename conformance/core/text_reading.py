@@ -248,7 +248,7 @@ class TextReading:
 
 # Layout of a text table: separator, decimal mark, head lines. A layout with two valid readings is refused.
 SEPARATORS: tuple[Separator, ...] = (";", "\t", ",", "|", " ")
-DECIMALS: tuple[DecimalSign, ...] = (".", ",")
+DECIMAL_MARKS: tuple[DecimalSign, ...] = (".", ",")
 SEPARATOR_NAMES = {";": "semicolon", "\t": "tab", ",": "comma", "|": "bar", " ": "blanks"}
 
 
@@ -293,8 +293,8 @@ def _list_separators(lines: list[NumberedLine]) -> tuple[Separator, ...]:
 
 def _list_decimals(lines: list[NumberedLine], separator: Separator) -> tuple[DecimalSign, ...]:
     """Decimal marks beside a separator; one that no line has reads a part of the numbers of the other one."""
-    marks = [mark for mark in DECIMALS if mark != separator]
-    return tuple(mark for mark in marks if any(mark in text for _, text in lines)) or DECIMALS[:1]
+    marks = [mark for mark in DECIMAL_MARKS if mark != separator]
+    return tuple(mark for mark in marks if any(mark in text for _, text in lines)) or DECIMAL_MARKS[:1]
 
 
 def _drop_equal(readings: list[TextReading]) -> list[TextReading]:

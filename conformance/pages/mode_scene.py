@@ -46,7 +46,7 @@ def build_mode_scene(line: IdentifiedLine) -> LineScene | None:
         return None
     ends = (supports[0], supports[-1])
     wires = [wire for wire in HEIGHTS if any(wire == known for known, _ in places)]
-    curves = [DrawnCurve(kind=HEIGHTS[wire][0], x_m=[*ends], y_m=[HEIGHTS[wire][1]] * 2) for wire in wires]  # type: ignore[arg-type]
+    curves = [DrawnCurve(kind=HEIGHTS[wire][0], x_m=[*ends], y_m=[HEIGHTS[wire][1]] * 2) for wire in wires]
     points = [DrawnPoint(symbol="sensor", x_m=x, y_m=HEIGHTS[wire][1], text=f"{wire} {x:g} m") for wire, x in places]
     none = DrawnDroppers(x_m=[], lower_m=[], upper_m=[])
     shape = LineShape(

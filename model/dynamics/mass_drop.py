@@ -68,7 +68,7 @@ def simulate_mass_drop(
         motion=recording.motion.transpose(1, 0, 2).copy(),
         last_slack=float(slack[-1]) if slack.size else None,
         slack_at_start=int((hanging.slack & line.connectors.unilateral).sum()),
-        frames=recorder and recorder.build_frames(),
+        frames=None if recorder is None else recorder.build_frames(),
     )
 
 

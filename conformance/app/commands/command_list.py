@@ -24,7 +24,7 @@ PANELS: dict[str, dict[str, str]] = {
         "show": "Show inputs, limits and notes of a case.",
         "simulate": "Simulate a case and write its record.",
         "readings": "Grade a record or case under every documented reading.",
-        "view": "Show a passage as a moving picture in a page.",
+        "view": "Show a passage or mass drops as moving pictures.",
     },
     "write": {
         "new": "Write a commented, valid input file to start from.",

@@ -43,7 +43,7 @@ def view_command(
     changed: SetOption = None,
     folders: CasesOption = None,
 ) -> CommandOutput:
-    """Show a passage, or the mass drops of a case, as moving pictures in a page.
+    """Show a passage or mass drops as moving pictures.
 
     A record has the force and the uplift alone: it holds no shapes of the wires. Nothing is judged: the exit code is 0.
 
