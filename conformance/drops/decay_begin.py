@@ -1,4 +1,9 @@
-"""Begin of the linear decay, tested by the poles: those of the whole part must be those of every later part.
+"""Begin of the linear decay, tested by the poles.
+
+The poles of the whole part must be modes. If droppers slacken at its start, poles that decay within a second or two
+represent this: no such pole is as slow as a mode. The decay then begins when they have died out.
+
+The poles of the whole part must be those of every later part.
 
 A dropper that slackens during the fitted part biases the poles, and poles without a mode represent the disturbance. If
 the line is linear, the estimate from the whole part is efficient: the difference to an estimate from a later part has
@@ -18,10 +23,16 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay
-from pantocheck.conformance.drops.line_fit import FittedBlock, LineFit
+from pantocheck.conformance.drops.line_fit import UNCERTAIN, FittedBlock, LineFit
 from pantocheck.conformance.drops.pole_refinement import build_normal_equations
 from pantocheck.conformance.drops.projection import DataBlock, Noise, build_block, whiten
 
+FAST = 5.0
+"""Decay rate and damping ratio over the median of the certain modes, above which a pole is a transient [-]."""
+FEWEST_CERTAIN = 5
+"""Fewest certain modes that show how fast modes decay."""
+SHORTEST_DELAY, LONGEST_DELAY = 1.0, 8.0
+"""Limits of the time until transients have died out [s]."""
 DELAYS = (0.0, 1.0, 2.0, 3.5, 5.5, 8.0, 12.0, 18.0, 27.0, 40.0)
 """Times that are left out at the start of a decay [s]."""
 SHORTEST_SHARE = 0.6
@@ -42,6 +53,8 @@ class DecayBegin:
     """Time after the present begin [s]; None: there is none."""
     excess: float
     """Mean squared difference of the poles from those of a later begin, over its expectation for noise [-]."""
+    transients: int = 0
+    """Number of poles that decay too fast for modes; the poles are compared only if there are none."""
 
 
 NO_DELAY = DecayBegin(0.0, 0.0)
@@ -49,7 +62,12 @@ NO_DELAY = DecayBegin(0.0, 0.0)
 
 
 def find_begin(fit: LineFit) -> DecayBegin:
-    """Find the earliest begin of the decays of a fit whose poles agree with those of all later begins."""
+    """Find the earliest begin of the decays of a fit without transients, whose poles agree with those of later begins.
+
+    Transients are left to die out, whatever remains at later begins.
+    """
+    if (transients := find_transients(fit)).any():
+        return DecayBegin(_find_silence(fit, transients), 0.0, int(transients.sum()))
     delays = list(takewhile(lambda delay: all(_determines(block, delay) for block in fit.blocks), DELAYS))
     if len(delays) < 2:
         return NO_DELAY
@@ -60,6 +78,27 @@ def find_begin(fit: LineFit) -> DecayBegin:
     ]
     first = next((number for number, ratio in enumerate(ratios[:-1]) if ratio < 1), None)
     return DecayBegin(None if first is None else DELAYS[first], ratios[0])
+
+
+def find_transients(fit: LineFit) -> NDArray[np.bool_]:
+    """Mask of the poles in the reported band that decay much faster than the certain modes, (m,)."""
+    rate, modulus = -fit.poles.real, np.abs(fit.poles)
+    inside = (modulus >= 2 * np.pi * fit.band.low) & (modulus <= 2 * np.pi * fit.band.high)
+    certain = inside & (np.sqrt(np.diag(fit.covariance)[: rate.size]) < UNCERTAIN * rate)
+    if certain.sum() < FEWEST_CERTAIN:
+        return np.zeros(rate.size, dtype=np.bool_)
+    ratio = rate / modulus
+    return np.asarray(inside & (rate > FAST * np.median(rate[certain])) & (ratio > FAST * np.median(ratio[certain])))
+
+
+def _find_silence(fit: LineFit, transients: NDArray[np.bool_]) -> float:
+    """Time until the residues of transients are below their standard deviation [s]."""
+    times = [
+        np.log(np.max(np.abs(block.fit.residues[transients]) / block.residue_std[transients], axis=1))
+        / -fit.poles.real[transients]
+        for block in fit.blocks
+    ]
+    return float(np.clip(np.max(times), SHORTEST_DELAY, LONGEST_DELAY))
 
 
 def _determines(block: FittedBlock, delay: float) -> bool:
@@ -124,7 +163,7 @@ def _begin_later(decay: PreparedDecay, late: float) -> PreparedDecay:
     name = decay.record.name
     begin = (
         f"{name}: used from {linear.start + shift - decay.release.time:.1f} s after the release; with an earlier "
-        "begin, the modes differ from those of the later decay"
+        "begin, the modes differ from those of the later decay, or poles decay faster than modes"
     )
     kept = tuple(text for text in decay.warnings if not text.startswith(f"{name}: used from"))
     later = replace(linear, samples=linear.samples[skipped:], start=linear.start + shift, first=linear.first + shift)
@@ -133,9 +172,14 @@ def _begin_later(decay: PreparedDecay, late: float) -> PreparedDecay:
 
 def refuse_begin(decay: PreparedDecay, found: DecayBegin) -> InputError:
     """Error of a record without a linear part."""
+    measured = (
+        f"needs {found.transients} poles that decay {FAST:g} times faster than its modes"
+        if found.transients
+        else f"has other modes than its later parts, {found.excess:.1f} times as much as by noise"
+    )
     return InputError(
         decay.record.name,
-        f"is not a linear decay: the modes of the part from {decay.linear.start - decay.release.time:.0f} s after the "
-        f"release differ from those of its later parts, {found.excess:.1f} times as much as by noise",
+        f"is not a linear decay: the part from {decay.linear.start - decay.release.time:.0f} s after the release "
+        f"{measured}",
         "Record longer, or drop a smaller mass: as long as droppers slacken, no sum of decays fits.",
     )

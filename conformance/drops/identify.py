@@ -178,8 +178,8 @@ def identify_decays(
     for _ in range(ROUNDS):
         found = _identify_once(decays, band, start, progress, plan)
         begin = find_begin(found.fit) if _is_free(start, plan) else NO_DELAY
-        # Poles that the user left out would be taken for wrong clocks.
-        is_explained = start is None or found.fit.misfit < SHARED_POLES
+        # Poles that the user left out, and transients, would be taken for wrong clocks.
+        is_explained = not begin.transients and (start is None or found.fit.misfit < SHARED_POLES)
         compared = compare_clocks(found.fit) if is_explained and plan.method != "classical" else None
         clocks = () if compared is None else sum_clocks(compared.clocks, applied)
         moved = [] if compared is None else list_corrections(compared.clocks, applied)

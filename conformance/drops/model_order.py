@@ -104,7 +104,7 @@ def _keep_in_band(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
     return np.asarray(poles[(poles.imag > low / 2) & (poles.imag < high + 2 * np.pi * OUTSIDE)])
 
 
-def _detection_threshold(blocks: list[DataBlock]) -> float:
+def detection_threshold(blocks: list[DataBlock]) -> float:
     """Smallest reduction of the squared residual by a pole that is kept."""
     channels = sum(data.spectrum.shape[1] for data in blocks)
     lines = max(data.lines.size for data in blocks)
@@ -113,7 +113,7 @@ def _detection_threshold(blocks: list[DataBlock]) -> float:
 
 def _add_poles(poles: ComplexArray, blocks: list[DataBlock], centres: list[float] | None) -> ComplexArray:
     """Add poles that reduce the residual; they are tried at the centres [rad/s], or where it exceeds the noise."""
-    least = _detection_threshold(blocks)
+    least = detection_threshold(blocks)
     fits = [solve_residues(poles, data) for data in blocks]
     for centre in _suspicious_frequencies(blocks, fits) if centres is None else centres:
         local = restrict_fit(poles, blocks, fits, centre)
@@ -130,7 +130,7 @@ def _add_poles(poles: ComplexArray, blocks: list[DataBlock], centres: list[float
 
 def _remove_poles(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
     """Remove the poles that do not reduce the squared residual noticeably."""
-    least = _detection_threshold(blocks)
+    least = detection_threshold(blocks)
     fits = [solve_residues(poles, data) for data in blocks]
     white = all(data.whitening is None for data in blocks)
     contribution = pole_contributions(poles, blocks) if white else _local_contributions(poles, blocks, fits)

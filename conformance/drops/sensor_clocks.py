@@ -3,6 +3,9 @@
 A clock that is fast by a rate e stretches its record: all poles of the sensor are lower by the factor 1 / (1 + e). The
 rates are unknowns beside the poles in one Gauss-Newton step from the poles of a common clock; the start of a clock
 turns the phase of each mode by omega times the start.
+
+Two poles nearer than a spectral line, with residues of their own at each sensor, also fit a mode that clocks show at two
+frequencies. The rates are then badly determined. If the rates alone explain what the second poles explain, they count.
 """
 
 from collections.abc import Iterable, Sequence
@@ -13,7 +16,8 @@ import numpy as np
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.line_fit import FittedBlock, LineFit
+from pantocheck.conformance.drops.line_fit import FittedBlock, LineFit, fit_line
+from pantocheck.conformance.drops.model_order import detection_threshold
 from pantocheck.conformance.drops.pole_refinement import NormalEquations, add_clock_rates, build_normal_equations
 
 REFUTED = 4.5
@@ -26,6 +30,8 @@ LEAST_RATE = 1e-6
 """Smallest rate that counts: crystals of one recorder differ by less [-]."""
 LONGEST_START, LEAST_START = 0.25, 0.002
 """Largest start of a clock that the phases of the modes show, and the smallest that counts [s]."""
+MERGED_STEPS = 4
+"""Largest number of steps of the refinement of poles of which near ones are merged."""
 TAPS, SMOOTH = 32, 8.0
 """Number of samples and shape (Kaiser) of the interpolation between samples."""
 
@@ -64,10 +70,47 @@ class ClockComparison:
     """Poles after a Gauss-Newton step of poles and rates together, (m,) [1/s]."""
     covariance: RealArray
     """Covariance of decay rates and angular frequencies that contains that of the rates, (2 m, 2 m)."""
+    explained: float = 0.0
+    """Reduction of the squared residual by that step [-]."""
 
 
 def compare_clocks(fit: LineFit) -> ClockComparison:
-    """Compare the clocks of the sensors of a fit."""
+    """Compare the clocks of the sensors of a fit; clocks that explain the second of two near poles are preferred."""
+    found, merged = _compare_rates(fit), _merge_near_poles(fit)
+    removed = fit.poles.size - merged.poles.size
+    if not removed or not found.clocks:
+        return found
+    simpler = _compare_rates(merged)
+    left = _squared_residual(merged) - simpler.explained - _squared_residual(fit)
+    is_enough = left < removed * detection_threshold([block.data for block in fit.blocks])
+    is_needed = any(clock.deviates for clock in simpler.clocks)
+    return replace(found, clocks=simpler.clocks) if is_enough and is_needed else found
+
+
+def _merge_near_poles(fit: LineFit) -> LineFit:
+    """Fit with the stronger one of poles that are nearer than a spectral line; the fit itself if there are none."""
+    line = 2 * np.pi / min(block.data.duration for block in fit.blocks)
+    energy = sum(np.sum(np.abs(block.fit.residues / block.noise) ** 2, axis=1) for block in fit.blocks)
+    kept: list[int] = []
+    for pole in np.argsort(-np.asarray(energy)):
+        if all(abs(fit.poles[pole] - fit.poles[other]) > line for other in kept):
+            kept.append(int(pole))
+    if len(kept) == fit.poles.size:
+        return fit
+    decays = [record.decay for record in fit.records]
+    numbers = {id(block): number for number, block in enumerate(fit.blocks)}
+    places = [(numbers[id(record.block)], record.columns) for record in fit.records]
+    data = [block.data for block in fit.blocks]
+    noise = [block.noise if block.process is None else block.process for block in fit.blocks]
+    return fit_line(decays, places, data, fit.poles[sorted(kept)], noise, fit.band, MERGED_STEPS)
+
+
+def _squared_residual(fit: LineFit) -> float:
+    return float(sum(np.sum(np.abs(block.white_residual) ** 2) for block in fit.blocks))
+
+
+def _compare_rates(fit: LineFit) -> ClockComparison:
+    """Compare the clocks of the sensors by one step of poles and rates from the poles of a fit."""
     sensors = list(dict.fromkeys(channel.sensor for record in fit.records for channel in record.decay.channels))
     m = fit.poles.size
     if len(sensors) < 2 or not m:
@@ -89,7 +132,8 @@ def compare_clocks(fit: LineFit) -> ClockComparison:
     moved = -change[:m] + 1j * change[m : 2 * m]
     # A step beyond the half-power band of a weak mode is not linear.
     poles = np.where(np.abs(moved) < -fit.poles.real / 2, fit.poles + moved, fit.poles)
-    return ClockComparison(clocks, np.asarray(poles), np.asarray(covariance[: 2 * m, : 2 * m]))
+    explained = float(change @ gradient[used])
+    return ClockComparison(clocks, np.asarray(poles), np.asarray(covariance[: 2 * m, : 2 * m]), explained)
 
 
 def build_equations(fit: LineFit, block: FittedBlock, sensors: Sequence[int]) -> NormalEquations:
