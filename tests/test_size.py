@@ -14,23 +14,23 @@ CODE = {".py", ".c", ".h", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
-    ("model", "conformance"): 89_560,
+    ("model", "conformance"): 90_700,
     ("templates",): 4_680,
-    ("verification",): 20_300,
-    ("tests",): 59_750,
+    ("verification",): 20_680,
+    ("tests",): 60_150,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
-The core of the time steps in C (1,780 lines of the product with its choice), pantographs as FMUs (1,650), records of
-several files with clocks of their own (1,460) and heads in the checks of records (490) raised them before. Runs of
-measured lines (1,710 lines of the product), a line as an FMU (810), the moving picture of a passage (620, and 660 of
-templates) and the step with full matrices as a kernel (460, which left the tests) have raised them last.
+The core of the time steps in C (1,780 lines of the product with its choice), pantographs as FMUs (1,650), runs of
+measured lines (1,710), records of several files with clocks of their own (1,460), a line as an FMU (810) and the moving
+picture of a passage (620, and 660 of templates) raised them before. A line against a rig (960 lines of the product),
+moving mass drops (450), the comparison of spans (320) and transients of mass drops (100) have raised them last.
 A lower number replaces these whenever it is reached. A subject that must add lines raises its number in the same
 commit, states the reason there, and adds at most 1,800 lines to the product, 1,500 to the tests and 900 to
 `verification/`.
 """
 
-MOST_WORDS = 79_900
+MOST_WORDS = 81_000
 """Largest number of words in the pages of `docs/`."""
 
 

@@ -36,6 +36,7 @@ class DocumentationPage(Enum):
     READINGS = "Readings of the evaluation"
     RECORDS = "Records"
     SYSTEMS = "Systems under test"
+    RIG = "A line against a rig"
     VALIDATE = "Validation of a simulator for a line"
 
     def __str__(self) -> str:

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay
 from pantocheck.conformance.drops.line_fit import UNCERTAIN, FittedBlock, LineFit
 from pantocheck.conformance.drops.pole_refinement import build_normal_equations
@@ -173,7 +174,7 @@ def _begin_later(decay: PreparedDecay, late: float) -> PreparedDecay:
 def refuse_begin(decay: PreparedDecay, found: DecayBegin) -> InputError:
     """Error of a record without a linear part."""
     measured = (
-        f"needs {found.transients} poles that decay {FAST:g} times faster than its modes"
+        f"needs {count_noun(found.transients, 'pole')} with more than {FAST:g} times the decay of its modes"
         if found.transients
         else f"has other modes than its later parts, {found.excess:.1f} times as much as by noise"
     )

@@ -4,8 +4,9 @@ A clock that is fast by a rate e stretches its record: all poles of the sensor a
 rates are unknowns beside the poles in one Gauss-Newton step from the poles of a common clock; the start of a clock
 turns the phase of each mode by omega times the start.
 
-Two poles nearer than a spectral line, with residues of their own at each sensor, also fit a mode that clocks show at two
-frequencies. The rates are then badly determined. If the rates alone explain what the second poles explain, they count.
+Two poles nearer than a spectral line, with residues of their own at each sensor, also fit a mode that clocks show at
+two frequencies. The rates are then badly determined. If the rates alone explain what the second poles explain, they
+count.
 """
 
 from collections.abc import Iterable, Sequence

@@ -16,7 +16,7 @@ from pantocheck.model.dynamics.foreign_pantograph import build_interface, couple
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest
 from pantocheck.model.dynamics.passage import ForeignPantograph, Frames, History, Passage
-from pantocheck.model.dynamics.recording import FrameRecorder, allocate_recording, simulate_steps
+from pantocheck.model.dynamics.recording import FrameRecorder, Recording, allocate_recording, simulate_steps
 from pantocheck.model.dynamics.reference_kernel import simulate_full_steps
 from pantocheck.model.dynamics.train import Train, build_train
 from pantocheck.model.fem import beam
@@ -74,23 +74,27 @@ def simulate_passage(
             if passage.frames is not None:
                 recorder = FrameRecorder(passage.frames, kernel, line.connectors.station.size)
             simulate_steps(kernel, motion, train, np.zeros(steps), recording, progress, recorder)
-    time: Array = passage.time_step * np.arange(1, steps + 1).astype(np.float64)
-    position: Array = np.array(passage.start)[:, None] + passage.speed * time
+    history = build_history(passage, window, train, recording)
+    time = history.time
+    frames = None if recorder is None else _hide_unknown(recorder, line, window, passage, time)
+    return replace(history, coupling=tuple(interface.coupling for interface in interfaces), frames=frames)
+
+
+def build_history(passage: Passage, window: WindowArrays, train: Train, recording: Recording) -> History:
+    """Contact forces and motion of a recorded passage."""
+    time: Array = passage.time_step * np.arange(1, len(recording.contact) + 1).astype(np.float64)
     force, height = recording.contact.T.copy(), recording.height.T.copy()
     first = train.first_strip[:-1]
     watched = recording.motion.transpose(1, 0, 2).copy()
     stations = np.array([place for _, place in passage.watched])
     watched[find_unknown(window, passage, stations, time)] = np.nan
-    frames = None if recorder is None else _hide_unknown(recorder, line, window, passage, time)
     return History(
         time=time,
-        position=position,
+        position=np.array(passage.start)[:, None] + passage.speed * time,
         force=np.add.reduceat(force, first),
         height=np.add.reduceat(height, first) / np.diff(train.first_strip)[:, None],
         motion=watched,
         strip_force=force,
-        coupling=tuple(interface.coupling for interface in interfaces),
-        frames=frames,
     )
 
 

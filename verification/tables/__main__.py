@@ -112,6 +112,8 @@ PROGRAMS = {
     "field-coverage": Program("tables.field_coverage", ("field-coverage", "field-modes"), "{docs}/field-records.csv"),
     "line-coverage": Program("tables.line_coverage", ("line-coverage",), "{docs}/line-fits.csv"),
     "line-hold-out": Program("tables.line_hold_out", ("line-hold-out",), "{docs}/line-hold-out.csv"),
+    "rig-accuracy": Program("rig.rig_accuracy", ("rig-accuracy",)),
+    "rig-times": Program("rig.rig_hour", ("rig-times",)),
     "speed": Program("speed.speed", ("speed-plane", "speed-length", "speed-refactorised", "speed-engine")),
     "commands": Program("speed.commands", ("speed-commands",)),
     "installation": Program("speed.installation", ("installation",)),

@@ -63,6 +63,7 @@ PANELS: dict[str, dict[str, str]] = {
     "system": {
         "system check": "Check the adapter of a simulator with short cases.",
         "system self-test": "Test the suite with faulty systems.",
+        "system rig": "Run a line against an actuator and a force sensor, in real time.",
     },
     "suite": {
         "doctor": "Show versions, extras, caches and folders.",

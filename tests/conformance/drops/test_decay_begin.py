@@ -7,13 +7,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.surrogate_drops import build_line_modes, make_record
-from pantocheck.conformance.drops.decay_begin import cut_begin, find_begin, refuse_begin
+from pantocheck.conformance.drops.decay_begin import cut_begin, find_begin, find_transients, refuse_begin
 from pantocheck.conformance.drops.identify import Identification, identify_modes
 from pantocheck.conformance.drops.line_fit import LineFit, fit_line
 from pantocheck.conformance.drops.pole_refinement import add_clock_rates
 from pantocheck.conformance.drops.process_noise import ProcessNoise
 from pantocheck.conformance.drops.projection import build_block
-from pantocheck.conformance.drops.sensor_clocks import build_equations, compare_clocks
+from pantocheck.conformance.drops.sensor_clocks import _merge_near_poles, build_equations, compare_clocks
 from verification.tables.field_records import LINES, Disturbance
 
 
@@ -57,14 +57,53 @@ def test_decay_begins_after_a_part_that_biases_the_modes(found: Identification) 
 
 
 def test_decay_whose_modes_never_agree_is_refused(found: Identification) -> None:
-    """Amplitudes that change by a third every 7 s, to the end of the record."""
+    """Amplitudes that change by a fifth every 7 s, to the end of the record."""
     linear = found.fit.records[0].decay.linear
     time = np.arange(linear.samples.shape[0]) * linear.dt
-    begin = find_begin(change_samples(found, 1 + 0.3 * np.sign(np.sin(2 * np.pi * time / 7.0))))
+    begin = find_begin(change_samples(found, 1 + 0.1 * np.sign(np.sin(2 * np.pi * time / 7.0))))
     assert begin.delay is None
     assert "is not a linear decay: the part from 2 s after the release has other modes" in str(
         refuse_begin(found.fit.records[0].decay, begin)
     )
+
+
+def test_decay_begins_when_transients_have_died_out(found: Identification) -> None:
+    """A transient at 2.1 Hz with e^(-2 t): from its amplitude over the noise of its residue, within 10 %."""
+    fit, record = found.fit, found.fit.records[0]
+    assert not find_transients(fit).any()
+    linear, process = record.decay.linear, record.block.process
+    time = np.arange(linear.samples.shape[0]) * linear.dt
+    pole, height = -2.0 + 2j * np.pi * 2.1, 30 * np.abs(linear.samples).mean()
+    samples = linear.samples + height * np.exp(pole * time).real[:, None]
+    data = build_block(samples, linear.dt, fit.band.low, fit.band.fitted)
+    assert process is not None
+    decay = replace(record.decay, linear=replace(linear, samples=samples))
+    poles = np.append(fit.poles, pole)
+    poles = poles[np.argsort(poles.imag)]
+    changed = fit_line([decay], [(0, record.columns)], [data], poles, [process], fit.band, 4)
+    transients = find_transients(changed)
+    assert changed.poles[transients] == pytest.approx([pole], rel=0.02)
+    begin, block = find_begin(changed), changed.blocks[0]
+    ratio = np.abs(block.fit.residues[transients] / block.residue_std[transients]).max()
+    assert begin.delay == pytest.approx(min(np.log(ratio) / 2.0, 8.0), rel=0.1)
+    assert (begin.transients, begin.excess) == (1, 0.0)
+    assert "needs 1 pole with more than 5 times the decay of its modes" in str(refuse_begin(decay, begin))
+
+
+def test_second_of_two_near_poles_changes_no_clock(found: Identification) -> None:
+    """A pole beside that of a mode, by a third of a spectral line, is left out where the clocks are compared."""
+    fit, record = found.fit, found.fit.records[0]
+    line = 2 * np.pi / record.block.data.duration
+    poles = np.insert(fit.poles, 4, fit.poles[3] + 1j * line / 3)
+    process = record.block.process
+    assert process is not None
+    data = [block.data for block in fit.blocks]
+    doubled = fit_line([record.decay], [(0, record.columns)], data, poles, [process], fit.band, 0)
+    merged = _merge_near_poles(doubled)
+    assert merged.poles.size == fit.poles.size
+    assert_allclose(np.sort(merged.poles.imag), np.sort(fit.poles.imag), atol=line / 3)
+    assert _merge_near_poles(fit) is fit
+    assert not any(clock.deviates for clock in compare_clocks(doubled).clocks)
 
 
 def test_unknown_rates_widen_the_poles_and_do_not_depend_on_the_form_of_the_noise(found: Identification) -> None:
