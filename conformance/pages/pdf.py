@@ -29,7 +29,7 @@ def render_pdf(document: Document) -> bytes:
     words = read_words()
     files = {name: (TEMPLATES / name).read_bytes() for name in ("page.typ", "elements.typ")}
     data = {
-        "document": bind_page_units(to_plain(replace(translate_document(document), results=None))),
+        "document": bind_page_units(to_plain(replace(translate_document(document), results=None, scenes=()))),
         "attachment": None,
         "verdicts": translate_tree(words["verdict"], document.language),
         "trusts": translate_tree(words["trust"], document.language),

@@ -27,7 +27,7 @@ STOP_S, END_S, BRAKE_S = 0.5, 0.1, 0.02
 """Time of the commands after a stop and after the end, and time constant of the brake [s]."""
 APPROACH_M_S, APPROACH_RAD_S = 0.05, 10.0
 """Speed and natural frequency of the approach [m/s, rad/s]."""
-FORCE_SHARE = 0.2
+STATIC_FORCE_SHARE = 0.2
 """Largest difference of the force at rest from the static force of the case [-]."""
 
 
@@ -236,7 +236,7 @@ class RigControl:
             self._rig = RigCorrection(self.line, self.cutoff, self.limits.watchdog, self._last)
         if self._elapsed >= HOLD_S:
             static = self.line.start_force
-            if abs(self._resting_force - static) > FORCE_SHARE * static:
+            if abs(self._resting_force - static) > STATIC_FORCE_SHARE * static:
                 self._stop(f"the mean force at rest is {self._resting_force:.1f} N, and {static:.1f} N in the case")
                 return
             self.line.restart()

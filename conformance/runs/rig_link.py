@@ -23,7 +23,7 @@ from pantocheck.conformance.core.input_error import InputError
 
 COMMAND, SAMPLE = struct.Struct("<4sIQdd"), struct.Struct("<4sIQddd")
 COMMAND_MARK, SAMPLE_MARK = b"PCR1", b"PCS1"
-MOST_SAMPLES = 64
+MOST_PER_STEP = 64
 """Largest number of messages that are read in one step."""
 
 
@@ -129,7 +129,7 @@ class UdpLink:
     def receive(self) -> list[RigSample | None]:
         """Samples that have arrived."""
         found: list[RigSample | None] = []
-        while len(found) < MOST_SAMPLES:
+        while len(found) < MOST_PER_STEP:
             try:
                 found.append(read_sample(self._socket.recv(SAMPLE.size + 1)))
             except BlockingIOError:

@@ -19,11 +19,11 @@ LOG_BLOCK = 256
 """Rows of the log that are written at once."""
 BINS = 20_000
 """Bins of a histogram of times, each of 1 us; the last one holds all longer times."""
-PRIORITY = 10
+LOOP_PRIORITY = 10
 """Priority of the loop among the processes in real time of Linux."""
 
 
-class Clock(Protocol):
+class LoopClock(Protocol):
     """Clock of a loop."""
 
     def now(self) -> float:
@@ -99,7 +99,7 @@ class RigLog:
         self._filled = 0
 
 
-def run_loop(control: RigControl, link: RigLink, clock: Clock, log: RigLog) -> RigTimes:
+def run_loop(control: RigControl, link: RigLink, clock: LoopClock, log: RigLog) -> RigTimes:
     """Run a rig until its control has finished, one step per time step of the line."""
     times, begin = RigTimes(), clock.now()
     try:
@@ -140,7 +140,7 @@ def prefer_loop() -> Iterator[bool]:
     """Run a block before other processes, if the system allows it, and without collection of garbage; whether so."""
     preferred, gathers = False, gc.isenabled()
     with suppress(AttributeError, OSError):
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(LOOP_PRIORITY))
         preferred = True
     gc.disable()
     try:

@@ -21,7 +21,7 @@ from pantocheck.conformance.runs.uplift_tuning import estimate_uplift_forces
 from pantocheck.model.description.failures import ImpossiblePassage
 from pantocheck.model.dynamics.stepped_passage import SteppedPassage
 
-QUANTILES = {"median_us": 0.5, "99.99_pct_us": 0.9999}
+TIME_QUANTILES = {"median_us": 0.5, "99.99_pct_us": 0.9999}
 """Quantiles of the times of a run by their names in its summary."""
 
 
@@ -111,7 +111,7 @@ def describe_times(times: RigTimes) -> dict[str, Any]:
         "steps": times.steps,
         "missed_deadlines": times.missed,
         **{
-            name: {key: part.quantile_us(share) for key, share in QUANTILES.items()}
+            name: {key: part.quantile_us(share) for key, share in TIME_QUANTILES.items()}
             | {"worst_us": round(1e6 * part.worst_s, 1)}
             for name, part in parts.items()
         },

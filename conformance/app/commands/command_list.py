@@ -63,7 +63,7 @@ PANELS: dict[str, dict[str, str]] = {
     "system": {
         "system check": "Check the adapter of a simulator with short cases.",
         "system self-test": "Test the suite with faulty systems.",
-        "system rig": "Run a line against an actuator and a force sensor, in real time.",
+        "system rig": "Run a line against a pantograph on a rig.",
     },
     "suite": {
         "doctor": "Show versions, extras, caches and folders.",

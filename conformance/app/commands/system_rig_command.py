@@ -43,7 +43,7 @@ def system_rig_command(
     connection: Annotated[float, typer.Option("--connection-s", help="Longest wait for the rig.", min=0.1)] = 10.0,
     cutoff: Annotated[float, typer.Option("--cutoff-Hz", help="Cut-off of the correction.", min=1.0, max=200.0)] = 50.0,
 ) -> CommandOutput:
-    """Run a line against an actuator and a force sensor, in real time.
+    """Run a line against a pantograph on a rig.
 
     The wire of the case moves the actuator under a real pantograph, and the measured force acts on the line. A limit
     that is exceeded brakes the head and ends the run. Exit code 0: all passages are complete. Exit code 1: a limit

@@ -379,9 +379,9 @@ def test_help_of_every_command_fits_80_columns() -> None:
         assert re.search(r"^ +(Example: )?pantocheck " + name, result.output, re.MULTILINE), f"{name}: example"
 
 
-def test_root_help_fits_65_lines_and_an_unknown_command_suggests_a_known_one() -> None:
+def test_root_help_fits_66_lines_and_an_unknown_command_suggests_a_known_one() -> None:
     lines = pantocheck("--help", COLUMNS="80").output.splitlines()
-    assert len(lines) <= 65
+    assert len(lines) <= 66
     assert max(map(len, lines)) <= 80
     listed = [line.split("  ")[1] for line in lines if line.startswith("  ") and line.split("  ")[1] in COMMANDS]
     assert sorted(listed) == sorted(COMMANDS)
