@@ -112,6 +112,7 @@ PROGRAMS = {
     "field-coverage": Program("tables.field_coverage", ("field-coverage", "field-modes"), "{docs}/field-records.csv"),
     "line-coverage": Program("tables.line_coverage", ("line-coverage",), "{docs}/line-fits.csv"),
     "line-hold-out": Program("tables.line_hold_out", ("line-hold-out",), "{docs}/line-hold-out.csv"),
+    "network-detection": Program("tables.network_detection", ("network-detection",), "--seeds 21 22 --segments 14"),
     "rig-accuracy": Program("rig.rig_accuracy", ("rig-accuracy",)),
     "rig-times": Program("rig.rig_hour", ("rig-times",)),
     "speed": Program("speed.speed", ("speed-plane", "speed-length", "speed-refactorised", "speed-engine")),
