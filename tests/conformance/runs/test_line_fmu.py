@@ -122,10 +122,10 @@ def test_a_state_a_reset_and_another_instance_give_the_same_bits(export_line: Ex
 
 
 def test_repeated_passages_are_equal_and_take_no_memory(export_line: ExportLine) -> None:
-    """A state has 0.2 MB: losing one per passage would show after ten passages as 2 MB."""
+    """A state has 0.2 MB: losing one per passage makes 40 MB of 200; other memory of the process moves by 4 MB."""
     result = repeat_passages(export_line(), read_record().contact_height[:, 9:300:10], simulated_s=300 * 0.004 * 200)
     assert (result.passages, result.largest_difference) == (200, 0.0)
-    assert result.memory_growth_MB < 1.0
+    assert result.memory_growth_MB < 10.0
 
 
 def test_position_and_long_steps(export_line: ExportLine) -> None:
