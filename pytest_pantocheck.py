@@ -6,6 +6,7 @@ the files below `pantocheck/` for top-level modules, and warns that `__main__` i
 
 from pantocheck.conformance.app.pytest_plugin.hooks import (
     pantocheck_assess,
+    pantocheck_pantograph,
     pantocheck_run,
     pytest_addoption,
     pytest_collect_file,
@@ -17,6 +18,7 @@ from pantocheck.conformance.app.pytest_plugin.hooks import (
 
 __all__ = [
     "pantocheck_assess",
+    "pantocheck_pantograph",
     "pantocheck_run",
     "pytest_addoption",
     "pytest_collect_file",

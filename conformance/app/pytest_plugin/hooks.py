@@ -14,6 +14,7 @@ from pantocheck.conformance.app.pytest_plugin.shared_folder import FOLDER_KEY, c
 
 if TYPE_CHECKING:
     from pantocheck.conformance.app.pytest_plugin.user_fixtures import GradedCase
+    from pantocheck.conformance.app.self_test.fmu_check import FmuCheck
 
 _LINES = pytest.StashKey[list[str]]()
 
@@ -117,6 +118,14 @@ def pantocheck_assess(pytestconfig: pytest.Config) -> "Callable[..., GradedCase]
     from pantocheck.conformance.app.pytest_plugin.user_fixtures import grade_arrays
 
     return partial(grade_arrays, **_options(pytestconfig))
+
+
+@pytest.fixture(scope="session")
+def pantocheck_pantograph() -> "Callable[..., FmuCheck]":
+    """Function that checks an FMU as a pantograph; see `user_fixtures.check_pantograph`."""
+    from pantocheck.conformance.app.pytest_plugin.user_fixtures import check_pantograph
+
+    return check_pantograph
 
 
 def _options(config: pytest.Config) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Grading in the tests of a user: functions of the fixtures `pantocheck_run` and `pantocheck_assess`."""
+"""Functions of the fixtures of a user's tests: `pantocheck_run`, `pantocheck_assess` and `pantocheck_pantograph`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,9 +7,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pantocheck.conformance.app.self_test.fmu_check import FmuCheck, check_fmu
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_parts import read_named_pantograph
 from pantocheck.conformance.cases.catalogue import open_catalogue
-from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.input_changes import InputChange, replace_pantographs
+from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.trust import Trust
@@ -124,6 +127,8 @@ def run_and_grade(
     trust: Trust = "secondary",
     verdicts: VerdictChoice | None = None,
     timeout_s: float = TIMEOUT_S,
+    pantographs: Sequence[str | Path] = (),
+    limits: str | Path | None = None,
     case_folders: Sequence[str | Path] = (),
 ) -> GradedCase:
     """Run a case on a system and grade it.
@@ -135,16 +140,21 @@ def run_and_grade(
         trust: Lowest trust of limits that count.
         verdicts: Verdicts that decide; default: the criteria for the built-in simulator, both for any other system.
         timeout_s: Time limit of a program [s].
+        pantographs: Pantograph files or FMUs in place of those of the case, in running order; one stands for all. The
+            code of an FMU is run. The case then has no limits of the library.
+        limits: File of limits that replace those of the case.
         case_folders: Folders with further cases; default: those of `--pantocheck-cases`.
 
     Returns:
         Verdict, reasons and values.
 
     Raises:
-        InputError: There is no such case or system.
+        InputError: There is no such case, system, pantograph or file of limits.
     """
     tested = choose_system(system, timeout_s) if isinstance(system, str) else system
-    selected = _select_case(case, case_folders)
+    selected = _select_case(case, case_folders, replace_pantographs([str(name) for name in pantographs]))
+    if limits is not None:
+        (selected,) = overlay_limits([selected], read_limits(Path(limits)))
     if not isinstance(system, str | ReferenceSimulator):
         tested = ListedSystem(tested)
     return _decide(run_case(selected, tested, trust), choose_verdicts(verdicts, tested.kind))
@@ -212,14 +222,36 @@ def grade_arrays(
     return _decide(result, choose_verdicts(verdicts, "record"))
 
 
+def check_pantograph(model: str | Path, *, uplift_force_N: float = 120.0, step_s: float = 0.001) -> FmuCheck:
+    """Check an FMU as a pantograph, as `pantocheck pantograph check` does; its code is run.
+
+    Args:
+        model: FMU, or pantograph file with a table [fmu].
+        uplift_force_N: Uplift force [N].
+        step_s: Time step of the coupling [s].
+
+    Returns:
+        Findings, none of which is wrong.
+
+    Raises:
+        AssertionError: A finding is wrong; one line for each.
+        InputError: A file cannot be used.
+    """
+    __tracebackhide__ = True
+    check = check_fmu(read_named_pantograph(Path(model)), uplift_force_N, step_s)
+    if not check.passed:
+        wrong = [f"{finding.subject}: {finding.text}" for finding in check.findings if finding.state == "wrong"]
+        raise AssertionError(f"{Path(model).name}: " + "\n".join(wrong))
+    return check
+
+
 def _decide(result: CaseResult, requested: tuple[VerdictName, ...]) -> GradedCase:
     return GradedCase(Participation(requested=requested).decide_case(result), requested)
 
 
-def _select_case(name: str, folders: Sequence[str | Path]) -> Case:
-    cases = [
-        case for case in select_cases([name], (), open_catalogue(folders)) if case.id == name or name.endswith(".toml")
-    ]
+def _select_case(name: str, folders: Sequence[str | Path], changes: Sequence[InputChange] = ()) -> Case:
+    found = select_cases([name], changes, open_catalogue(folders))
+    cases = [case for case in found if case.id == name or name.endswith(".toml")]
     if len(cases) != 1:
         raise InputError(f"case '{name}'", f"{len(cases)} cases match", "Give the id or the file of one case.")
     return cases[0]

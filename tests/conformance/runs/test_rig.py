@@ -1,19 +1,24 @@
 """A line against a rig in simulated time: motion of the line, correction, every limit, messages and refusals."""
 
 import io
+import json
+import socket
 import struct
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 import pytest
 
 from helpers.command_line import pantocheck
 from helpers.short_cases import change_case
+from pantocheck.conformance.app.commands import system_rig_command
 from pantocheck.conformance.app.self_test.adapter_check import build_short_case, build_twin_case
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.line.catenary_model import discretise_line
+from pantocheck.conformance.runs.record_folder import read_case_record
 from pantocheck.conformance.runs.rig_control import LowPass, RigControl, RigLimits, RigRow
 from pantocheck.conformance.runs.rig_link import (
     RigCommand,
@@ -26,12 +31,13 @@ from pantocheck.conformance.runs.rig_link import (
 )
 from pantocheck.conformance.runs.rig_loop import RigLog, TimeHistogram, run_loop
 from pantocheck.conformance.runs.rig_run import build_stepped_passage, check_limits
+from pantocheck.model.description.failures import ImpossiblePassage
 from pantocheck.model.dynamics.core_choice import choose_core
 from pantocheck.model.dynamics.moved_head import MovedHead
 from pantocheck.model.dynamics.simulation import simulate_passage
 from pantocheck.model.dynamics.stepped_passage import SteppedPassage
 from verification.rig.rig_accuracy import EDGES_HZ, compare_bands
-from verification.rig.simulated_rig import DirectLink, RigFaults, SimulatedClock, SimulatedRig, change_head
+from verification.rig.simulated_rig import DirectLink, RigFaults, SimulatedClock, SimulatedRig, change_head, serve
 
 pytestmark = pytest.mark.skipif(choose_core().library is None, reason="a rig needs the core in C")
 
@@ -259,3 +265,38 @@ def test_command_refuses_what_cannot_run(options: Sequence[str], reason: str, tm
     result = pantocheck("system", "rig", *changes)
     assert result.exit_code == 2, result.output
     assert reason in " ".join(result.output.split())
+
+
+@pytest.mark.parametrize(("fault", "exit_code"), [(0, 0), (7, 1)])
+def test_command_runs_a_rig_over_udp(
+    fault: int, exit_code: int, line: SteppedPassage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In real time, with a watchdog of 5 s: the machine of a test may be busy. The record is one of the case."""
+    case = change_case(build_short_case(), mesh=(2.0, STEP_S))
+    monkeypatch.setattr(system_rig_command, "choose_train_case", lambda *_: case)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    rig = SimulatedRig(line.passage.pantographs[0], line.start_height, STEP_S, begin=0.0)
+    rig.fault = fault
+    server = Thread(target=serve, args=(rig, port), daemon=True)
+    server.start()
+    limits = ("--watchdog-ms", 5000, "--speed-limit-m-s", 5, "--force-limit-N", 500)
+    result = pantocheck("system", "rig", case.id, "--rig", f"127.0.0.1:{port}", *limits, "--out", tmp_path)
+    server.join(timeout=10.0)
+    assert (result.exit_code, server.is_alive()) == (exit_code, False), result.output
+    summary = json.loads((tmp_path / "rig.json").read_text("utf-8"))
+    assert len(np.load(tmp_path / "log.npy")) == summary["steps"]
+    if exit_code:
+        assert summary["stopped"].startswith("the rig reports the fault 7")
+        assert not (tmp_path / "record.csv").exists()
+    else:
+        assert (summary["stopped"], summary["passages"]) == (None, 1)
+        assert read_case_record(tmp_path / "record.csv", case)[0].force.shape[1] == line.steps
+
+
+def test_a_head_with_two_strips_is_refused(line: SteppedPassage) -> None:
+    own = line.passage.pantographs[0]
+    two = replace(own, own_strips=own.strips * 2)
+    with pytest.raises(ImpossiblePassage, match="one linear pantograph with one strip"):
+        SteppedPassage(discretise_line(build_short_case().line, 2.0), replace(line.passage, pantographs=(two,)))

@@ -19,6 +19,7 @@ from _pytest.config import _iter_rewritable_modules
 from helpers.command_line import SKIPPER
 from helpers.converged_fixtures import StateConverged
 from helpers.criterion_fixtures import build_requirement
+from helpers.fmu_fixtures import WriteFmu
 from helpers.outside_cases import write_case
 from helpers.toml_edit import edit_toml, write_toml
 from helpers.wave_system import Wave
@@ -411,6 +412,36 @@ def test_fixtures_grade_records_and_arrays(pytester: pytest.Pytester, plan: Path
     done = session(pytester, "--pantocheck-verdicts", "criteria")
     done.assert_outcomes(passed=3, failed=1)
     done.stdout.fnmatch_lines(["E*en50318-2002/250: max_force_N of pantograph 1 = 158.6 N, limits 175 to 210: 16.4 N*"])
+
+
+def test_fixtures_check_an_fmu_and_run_it(pytester: pytest.Pytester, write_fmu: WriteFmu, tmp_path: Path) -> None:
+    """In long steps; a limit beside the value fails, and an FMU with an added delay is named."""
+    write_fmu()
+    write_fmu(fault="delay", folder="late")
+    case = write_case(tmp_path / "own.toml", "own/coarse")
+    edit_toml(case, {"discretisation": {"element_m": 5.0, "time_step_s": 0.01}})
+    limit = {"trust": "primary", "source": "limits of this test"}
+    limits = [limit | {"quantity": "mean_force_N", "lower": 50.0}, limit | {"quantity": "std_force_N", "upper": 1.0}]
+    write_toml(tmp_path / "limits.toml", {"limit": limits})
+    pytester.makepyfile(
+        f"""
+        FOLDER = "{tmp_path}"
+
+        def test_fmu(pantocheck_pantograph, pantocheck_run):
+            assert pantocheck_pantograph(f"{{FOLDER}}/fmu/model.fmu", step_s=0.004).passed
+            fmu, limits = [f"{{FOLDER}}/fmu/model.fmu"], f"{{FOLDER}}/limits.toml"
+            graded = pantocheck_run(f"{{FOLDER}}/own.toml", pantographs=fmu, limits=limits)
+            assert graded.result.fmus[0].file == "model.fmu"
+            graded.check("mean_force_N", accept_unconfirmed=True)
+            graded.check("std_force_N")
+
+        def test_late(pantocheck_pantograph):
+            pantocheck_pantograph(f"{{FOLDER}}/late/model.fmu")
+        """
+    )
+    done = session(pytester)
+    done.assert_outcomes(failed=2)
+    done.stdout.fnmatch_lines(["E*std_force_N of pantograph 1 = *", "E*model.fmu: run: *"])
 
 
 def test_modules_of_a_user_with_names_of_our_folders_do_not_collide(pytester: pytest.Pytester, plan: Path) -> None:
