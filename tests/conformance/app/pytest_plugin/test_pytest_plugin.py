@@ -494,7 +494,8 @@ def test_distribution_has_one_module_with_the_hooks_and_fixtures_of_the_plugin()
     assert list(prepared) == list(project["project"]["entry-points"]["pytest11"].values()) == ["pytest_pantocheck"]
     assert "__main__" in _iter_rewritable_modules(["pantocheck/__main__.py", *packages])
     plugin = importlib.import_module("pantocheck.conformance.app.pytest_plugin.hooks")
-    parts = {name for name in vars(plugin) if name.startswith("pytest_")} | {"pantocheck_assess", "pantocheck_run"}
+    parts = {name for name in vars(plugin) if name.startswith("pytest_")}
+    parts |= {"pantocheck_assess", "pantocheck_pantograph", "pantocheck_run"}
     tree = ast.parse((ROOT / "pytest_pantocheck.py").read_text(encoding="utf-8"))
     (imported,) = (node for node in tree.body if isinstance(node, ast.ImportFrom))
     assert {alias.name for alias in imported.names} == parts
