@@ -59,7 +59,6 @@ class Entry:
     key: str
     """English text with its arguments."""
     translation: str
-    expression: re.Pattern[str]
     letters: int
     """Number of letters of the key outside its arguments: the entry with the most is tried first, of equal ones that
     with the most arguments."""
@@ -98,13 +97,14 @@ def _index(language: str) -> Mapping[str, tuple[Entry, ...]]:
     for key, text in read_catalogue(language).items():
         if ARGUMENT.search(key):
             words = WORD.findall(ARGUMENT.sub(" ", key))
-            entry = Entry(key, text, _compile(key), sum(map(len, words)))
+            entry = Entry(key, text, sum(map(len, words)))
             index.setdefault(max(words, key=len, default=""), []).append(entry)
     return {word: tuple(entries) for word, entries in index.items()}
 
 
+@cache
 def _compile(key: str) -> re.Pattern[str]:
-    """Expression of a key, with one group for each argument."""
+    """Expression of a key, with one group for each argument; only a key that shares a word with a text is compiled."""
     parts = ARGUMENT.split(key)
     pieces = [re.escape(part) if i % 2 == 0 else f"({ARGUMENT_TEXTS[part]})" for i, part in enumerate(parts)]
     return re.compile("".join(pieces), re.DOTALL)
@@ -160,7 +160,7 @@ def _match(text: str, language: str, words: list[str]) -> Translation | None:
     entries = {entry.key: entry for word in words for entry in index.get(word, ())}
     found: list[Translation] = []
     for entry in sorted(entries.values(), key=lambda entry: (-entry.letters, -entry.key.count("{"))):
-        if match := entry.expression.fullmatch(text):
+        if match := _compile(entry.key).fullmatch(text):
             filled = _fill(entry, match, language)
             if not filled.missing:
                 return filled
