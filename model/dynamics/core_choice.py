@@ -104,14 +104,14 @@ def call_core(library: ctypes.CDLL, name: str, arguments: Sequence[Any]) -> floa
     Args:
         library: Library of the core.
         name: Name of the function in Python.
-        arguments: Its arguments; results are written to their arrays.
+        arguments: Its arguments; results are written to their arrays. Bytes: arguments that are packed already.
 
     Returns:
         Result of the function; zero if it has none.
     """
     function = getattr(library, f"pantocheck_{name.strip('_')}")
     function.argtypes, function.restype = [ctypes.c_char_p], ctypes.c_double
-    words = b"".join(map(pack_argument, arguments))
+    words = b"".join(value if isinstance(value, bytes) else pack_argument(value) for value in arguments)
     result = float(function(struct.pack("=q", len(words) + 8) + words))
     if result < 0:
         raise UnusableCore(f"the core in C has other structures than the arguments of {name}")

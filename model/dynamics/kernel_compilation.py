@@ -8,12 +8,12 @@ Numba is loaded by the first call, or by the compilation of a caller. A simulati
 """
 
 from collections.abc import Callable
-from functools import cached_property, update_wrapper
+from functools import cached_property, partial, update_wrapper
 from importlib import import_module
 from types import FunctionType
 from typing import Any, TypeVar
 
-from pantocheck.model.dynamics.core_choice import UnusableCore, call_core, choose_core
+from pantocheck.model.dynamics.core_choice import UnusableCore, call_core, choose_core, pack_argument
 from pantocheck.model.kernel_cache import drop_outdated_kernels, provide_kernel_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -62,6 +62,14 @@ class EntryKernel(LateObject):
             return super().__call__(*arguments)
         result = call_core(library, function.__name__, arguments)
         return int(result) if function.__annotations__["return"] is int else result
+
+    def bind(self, *first: Any) -> Callable[..., Any]:
+        """Function of the other arguments; the core in C receives the first ones packed once.
+
+        The arrays of the first arguments must live as long as the function is called.
+        """
+        core = choose_core()
+        return partial(self, *first if core.library is None else map(pack_argument, first))
 
 
 class PlainKernel(LateObject):

@@ -85,6 +85,7 @@ def simulate_steps(
         DidNotConverge: The forces of a time step did not converge.
     """
     work = build_workspace(kernel, train)
+    advance = _advance.bind(kernel, motion, train, work)
     stops = {*range(BLOCK, load.size, BLOCK), load.size, *(frames.request.steps if frames else ())}
     for first, end in pairwise((0, *sorted(stops))):
         block = slice(first, end)
@@ -94,7 +95,7 @@ def simulate_steps(
             motion=recording.motion[block],
             slack=recording.slack[block],
         )
-        steps = _advance(kernel, motion, train, work, load[block], part)
+        steps = advance(load[block], part)
         if steps < end - first:
             refuse_divergence(first + steps, kernel.time_step)
         if frames:
