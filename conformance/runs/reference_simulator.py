@@ -42,6 +42,8 @@ OTHER_RUNS = "other meshes and starts"
 """Name of the steps after the first one together, on several threads."""
 COMPILATION = "compiling the simulator, once, about 35 s"
 """Step of the first run after an installation; its processor time on the machine of the speed page is 33 s."""
+AT_REST_S = 4.0
+"""Simulated time that takes as long as the static quantities of a line [s]."""
 
 Task = Callable[[ShareCallback], Delivered | None]
 """Run of a case on another mesh or from another start."""
@@ -131,9 +133,23 @@ def _plan_steps(case: Case) -> StepSequence:
     starts = {name_start(number): 1.0 for number, _ in enumerate(other_starts, 1)}
     lines = [] if case.is_static else list_tolerance_lines(case.line)
     starts |= {name_line(number): 1.0 for number, _ in enumerate(lines, 1)}
+    tuned = any(lift.target_mean_force is not None for lift in case.lift_forces)
     return StepSequence(
-        _LOGGER, case.id, {COMPILATION: 0.0, OWN_MESH: 2.0, FINE_MESH: 4.0, COARSE_MESH: 0.25, **starts}
+        _LOGGER,
+        case.id,
+        {COMPILATION: 0.0, OWN_MESH: 4.0 if tuned else 2.0, FINE_MESH: 4.0, COARSE_MESH: 0.25, **starts},
     )
+
+
+def estimate_work(case: Case) -> float:
+    """Work of a case and of its further runs: time steps x elements x pantographs x meshes and starts, 1e6 of them.
+
+    A coarse mesh counts less, a fine one more. A line at rest counts like a short passage.
+    """
+    discretisation = case.file.discretisation
+    simulated = AT_REST_S if case.is_static else (case.end - case.start) / case.speed
+    cells = simulated / discretisation.time_step_s * case.line.geometry.length / discretisation.element_m
+    return cells * max(len(case.pantographs), 1) * sum(_plan_steps(case).weights.values()) / 1e6
 
 
 def _begin_run(case: Case, steps: StepSequence) -> ShareCallback:

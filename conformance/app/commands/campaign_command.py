@@ -14,7 +14,7 @@ from pantocheck.conformance.app.commands.cases_option import CasesOption, comple
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import indent_text
 from pantocheck.conformance.app.commands.options import PantographOption, SetOption, TrustOption
-from pantocheck.conformance.app.commands.progress_display import show_line
+from pantocheck.conformance.app.commands.progress_display import FIRST_SHARE, show_line
 from pantocheck.conformance.campaigns.campaign_columns import choose_values
 from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress
 from pantocheck.conformance.campaigns.campaign_evaluation import RunPair, evaluate_campaign, pair_runs
@@ -239,6 +239,7 @@ def describe_progress(progress: CampaignProgress) -> str:
     counts = f"{progress.finished} of {progress.total} runs finished, {progress.failed} failed"
     if progress.rate is None or progress.remaining_s is None:
         return counts
-    remaining = timedelta(seconds=round(progress.remaining_s))
     rate = f"{progress.rate:.1f} per second" if progress.rate >= 1 else f"{60 * progress.rate:.1f} per minute"
-    return f"{counts}, {rate}, {remaining} remaining"
+    if progress.finished < FIRST_SHARE * progress.total:
+        return f"{counts}, {rate}"
+    return f"{counts}, {rate}, {timedelta(seconds=round(progress.remaining_s))} remaining"

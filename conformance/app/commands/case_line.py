@@ -1,6 +1,6 @@
 """Lines of a graded case in a terminal: verdict, values inside and close, reasons against a pass, and its force."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from rich.console import Console, ConsoleOptions, RenderableType
@@ -13,6 +13,7 @@ from pantocheck.conformance.app.commands.console import (
 )
 from pantocheck.conformance.app.commands.quantities_table import build_quantities_table, select_main
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.figure_data import Traces
 from pantocheck.conformance.pages.criteria_table import count_inside
 from pantocheck.conformance.pages.scope_page import describe_changes
 from pantocheck.conformance.pages.two_verdicts import list_criteria, mark_case, select_criteria
@@ -91,9 +92,12 @@ def list_case_remarks(results: Results, case: CaseResult, footnotes: Sequence[st
         missing = list_unknown(case.uncertainty_basis)
         table = build_quantities_table(case.quantities, case.uncertainty, select_main(case.quantities), missing)
         yield from [table] if table.row_count else []
-    for owner, trace in case.traces.items():
-        if trace.force_20_N:
-            yield ForceLine(f"force of pantograph {owner}", trace.force_20_N)
+    yield from draw_forces(case.traces)
+
+
+def draw_forces(traces: Mapping[str, Traces]) -> Iterator[ForceLine]:
+    """Line of blocks for the filtered force of each pantograph that has one."""
+    return (ForceLine(f"force of pantograph {n}", trace.force_20_N) for n, trace in traces.items() if trace.force_20_N)
 
 
 def _describe_failure(row: Criterion) -> str:

@@ -1,9 +1,9 @@
-"""Display of progress on standard error: task, step, completed share and remaining time.
+"""Display of progress on standard error: completed share, remaining time, task and step.
 
 =====================  ===========================================================
 output                 rule
 =====================  ===========================================================
-terminal               one line that is redrawn at most `REDRAWS_PER_S` times a second
+terminal               one line, cut to the width, redrawn at most `REDRAWS_PER_S` times a second
 file, pipe or log      one line every `LOG_INTERVAL_S`, none for a shorter command; a warning at once
 `-q`                   nothing
 =====================  ===========================================================
@@ -12,7 +12,7 @@ file, pipe or log      one line every `LOG_INTERVAL_S`, none for a shorter comma
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import timedelta
 
@@ -24,8 +24,10 @@ from pantocheck.conformance.app.commands.command_output import ROOT_LOGGER
 from pantocheck.conformance.app.commands.console import error_console
 from pantocheck.conformance.app.commands.guard import strip_control_characters
 from pantocheck.conformance.app.commands.output_settings import current_settings
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.step_log import TaskStep
 from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.runs.reference_simulator import estimate_work
 
 _LOGGER = logging.getLogger(__name__)
 
@@ -61,7 +63,7 @@ class _LiveLine:
         self._describe = describe
 
     def __rich__(self) -> Text:
-        return Text(strip_control_characters(self._describe()))
+        return Text(strip_control_characters(self._describe()), no_wrap=True, overflow="ellipsis")
 
 
 @contextmanager
@@ -83,12 +85,21 @@ def _print_periodically(describe: Callable[[], str], output: Console) -> Iterato
 
 
 class TaskProgress(logging.Handler):
-    """Progress of tasks that report their steps to the loggers `pantocheck.*`; the title is their purpose."""
+    """Progress of tasks that report their steps to the loggers `pantocheck.*`.
 
-    def __init__(self, title: str, total: int, clock: Callable[[], float] = time.monotonic) -> None:
+    The title is their purpose; `work` has the work of tasks by their names, in any unit. Without it, each has the same.
+    """
+
+    def __init__(
+        self,
+        title: str,
+        total: int,
+        clock: Callable[[], float] = time.monotonic,
+        work: Mapping[str, float] | None = None,
+    ) -> None:
         super().__init__()
-        self._title, self._total, self._clock = title, total, clock
-        self._begin, self._finished = clock(), 0
+        self._title, self._total, self._clock, self._work = title, total, clock, work or {}
+        self._begin, self._finished, self._done = clock(), 0, 0.0
         self._steps: dict[str, TaskStep] = {}
         self._task: str | None = None
         self._reached: list[tuple[float, float]] = []
@@ -122,16 +133,12 @@ class TaskProgress(logging.Handler):
     def finish_task(self, name: str = "") -> None:
         """Count a finished task; its steps begin with `name`, which is empty if no other task runs."""
         self._finished += 1
+        self._done += self._weigh(name)
         self._steps = {task: step for task, step in self._steps.items() if not task.startswith(name)}
 
     def describe(self) -> str:
         """Progress in one line."""
-        parts = [f"{self._title}: {self._finished} of {self._total} finished"] if self._total > 1 else [self._title]
-        steps = list(self._steps.values())
-        if steps:
-            parts += [f"{step.task}: {step.name}" for step in steps]
-        elif self._task is not None:
-            parts.append(self._task)
+        parts, steps = [], list(self._steps.values())
         now, (share, remaining) = self._clock(), self._estimate()
         if steps or self._reached or self._total > 1:  # the share of a program, a task without steps, is not known
             parts.append(f"{100 * share:.0f} %")
@@ -139,7 +146,17 @@ class TaskProgress(logging.Handler):
             parts.append(f"{timedelta(seconds=round(now - self._begin))} elapsed")
         else:
             parts.append(f"about {timedelta(seconds=round(remaining))} remaining")
+        parts.append(f"{self._title}: {self._finished} of {self._total} finished" if self._total > 1 else self._title)
+        if steps:
+            parts += [f"{step.task}: {step.name}" for step in steps]
+        elif self._task is not None:
+            parts.append(self._task)
         return ", ".join(parts)
+
+    def _weigh(self, task: str) -> float:
+        """Work of a task, or of a part whose name begins with that of its task."""
+        matching = (work for name, work in self._work.items() if f"{task}/".startswith(f"{name}/"))
+        return next(matching, 0.0 if self._work else 1.0)
 
     def _estimate(self) -> tuple[float, float | None]:
         """Completed share, and remaining time [s]; None: too little is done, or the time of the estimate is over."""
@@ -147,8 +164,9 @@ class TaskProgress(logging.Handler):
         if self._reached:
             (begin, first), (latest, share) = self._reached[0], self._reached[-1]
         else:
-            completed = self._finished + sum(step.completed for step in self._steps.values())
-            begin, first, latest, share = self._begin, 0.0, now, min(completed / self._total, 1.0)
+            completed = self._done + sum(step.completed * self._weigh(step.task) for step in self._steps.values())
+            total = sum(self._work.values()) or self._total
+            begin, first, latest, share = self._begin, 0.0, now, min(completed / total, 1.0)
         if share - first < FIRST_SHARE:
             return share, None
         remaining = (latest - begin) * (1 - share) / (share - first) - (now - latest)
@@ -156,9 +174,9 @@ class TaskProgress(logging.Handler):
 
 
 @contextmanager
-def follow_steps(title: str, total: int = 1) -> Iterator[TaskProgress]:
-    """Show the progress of tasks, whose purpose is the title, while they run."""
-    progress, logger = TaskProgress(title, total), logging.getLogger(ROOT_LOGGER)
+def follow_steps(title: str, total: int = 1, work: Mapping[str, float] | None = None) -> Iterator[TaskProgress]:
+    """Show the progress of tasks while they run; parameters as in `TaskProgress`."""
+    progress, logger = TaskProgress(title, total, work=work), logging.getLogger(ROOT_LOGGER)
     if current_settings().detail == "quiet":
         yield progress
         return
@@ -174,7 +192,16 @@ def follow_steps(title: str, total: int = 1) -> Iterator[TaskProgress]:
 
 
 @contextmanager
-def report_cases(cases: int, title: str = "running cases") -> Iterator[Callable[[CaseResult], None]]:
-    """Show the progress of cases; yields the callback of the runner."""
-    with follow_steps(title, cases) as progress:
+def report_cases(
+    cases: Sequence[Case], title: str = "running cases", further: int = 0
+) -> Iterator[Callable[[CaseResult], None]]:
+    """Show the progress of cases by their work; yields the callback of the runner.
+
+    Args:
+        cases: Cases to run.
+        title: Purpose of the runs.
+        further: Number of further runs whose results come in the same way.
+    """
+    work = {} if further else {case.id: estimate_work(case) for case in cases}
+    with follow_steps(title, len(cases) + further, work) as progress:
         yield lambda result: progress.finish_task(result.id)

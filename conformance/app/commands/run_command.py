@@ -181,7 +181,7 @@ def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Inter
     jobs = min(plan.jobs, len(cases))
     system = use_threads(system, plan.jobs // jobs)
     try:
-        with report_cases(len(cases)) as progress:
+        with report_cases(cases) as progress:
             follow = interruption.follow(progress, len(cases))
             results = run_cases(cases, system, plan.trust, jobs, follow, prepared.participation)
     except RunInterrupted as interrupted:
@@ -189,7 +189,7 @@ def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Inter
     if not with_reference or interruption.exit_code:
         return results, 0
     try:
-        with report_cases(len(cases), "reference simulator") as progress:
+        with report_cases(cases, "reference simulator") as progress:
             return add_reference(results, cases, jobs, interruption.follow(progress, len(cases))), 0
     except RunInterrupted as interrupted:
         return interrupted.results, interrupted.exit_code

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.app.commands.case_line import draw_forces
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
@@ -18,6 +19,7 @@ from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.records.record_writing import check_record_path, write_record
+from pantocheck.conformance.records.traces import build_pantograph_traces
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered, missing_record_reason
 from pantocheck.conformance.runs.system_choice import choose_system
@@ -71,11 +73,14 @@ def simulate_command(
             "line": {"span_m": chosen.line.geometry.longest_span},
         },
     )
-    values = {str(owner): quantities for owner, quantities in CaseEvaluation(chosen, outcome).evaluation.values.items()}
+    evaluation = CaseEvaluation(chosen, outcome)
+    values = {str(owner): quantities for owner, quantities in evaluation.evaluation.values.items()}
+    pantographs = {} if evaluation.signals is None else evaluation.signals.pantographs
+    forces = draw_forces(build_pantograph_traces(pantographs, ()))
     return CommandOutput(
         escape_text(f"{chosen.id}: simulated by {simulator.name} {simulator.version}"),
         {"case": chosen.id, "run": outcome.run, "quantities": values},
-        [build_quantities_table(values, {}, select_main(values))],
+        [build_quantities_table(values, {}, select_main(values)), *forces],
         [build_quantities_table(values, {}, list_names(values))],
         files=(out, out.with_name(sidecar.name)),
     )

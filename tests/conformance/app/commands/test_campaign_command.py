@@ -9,7 +9,9 @@ import pytest
 
 from helpers.cheap_campaign import fill_store
 from helpers.command_line import pantocheck
+from pantocheck.conformance.app.commands.campaign_command import describe_progress
 from pantocheck.conformance.campaigns import campaign_preparation
+from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress
 from pantocheck.conformance.campaigns.campaign_preparation import read_campaign
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
@@ -106,3 +108,9 @@ def test_wrong_options_end_with_a_message(
     assert result.exit_code == 2
     assert message in result.output
     assert not Path("out").exists()
+
+
+def test_remaining_time_is_shown_from_a_tenth_of_the_runs_on() -> None:
+    """At 2 runs per second, 30 of 300 runs leave 135 s; before, no time is extrapolated."""
+    assert describe_progress(CampaignProgress(300, 29, 0, 2.0)) == "29 of 300 runs finished, 0 failed, 2.0 per second"
+    assert describe_progress(CampaignProgress(300, 30, 0, 2.0)).endswith("2.0 per second, 0:02:15 remaining")

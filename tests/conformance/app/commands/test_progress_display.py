@@ -1,5 +1,6 @@
 """Progress: task, step, share and remaining time, live on a terminal and as lines elsewhere."""
 
+import io
 import logging
 import threading
 import time
@@ -7,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 
 import pytest
+from rich.console import Console
 
 from helpers.short_cases import shorten_case
 from pantocheck.conformance.app.commands import progress_display
@@ -23,6 +25,7 @@ from pantocheck.conformance.runs.reference_simulator import (
     OTHER_RUNS,
     OWN_MESH,
     ReferenceSimulator,
+    estimate_work,
 )
 from pantocheck.model.description.failures import SimulationError
 from pantocheck.model.dynamics.core_choice import Core
@@ -60,7 +63,7 @@ def test_remaining_time_follows_the_finished_share() -> None:
         steps.begin("mesh of the case")(0.5)
     clock.now = 50.0
     assert progress.describe() == (
-        "running cases: 1 of 2 finished, en50318-2002/300: mesh of the case, 62 %, about 0:00:30 remaining"
+        "62 %, about 0:00:30 remaining, running cases: 1 of 2 finished, en50318-2002/300: mesh of the case"
     )
     # An earlier run has done 20 %; 30 % more take 60 s, so the other half takes 100 s, of which 40 s pass.
     clock = Clock()
@@ -69,9 +72,42 @@ def test_remaining_time_follows_the_finished_share() -> None:
     clock.now = 60.0
     progress.reach("library/long", 2, 0.5)
     clock.now = 100.0
-    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, about 0:01:00 remaining"
+    assert progress.describe() == "50 %, about 0:01:00 remaining, guide: 2 of 4 finished, library/long"
     clock.now = 160.0  # the estimate is over, but not the work
-    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, 0:02:40 elapsed"
+    assert progress.describe() == "50 %, 0:02:40 elapsed, guide: 2 of 4 finished, library/long"
+
+
+def test_share_follows_the_work_of_the_cases(caplog: pytest.LogCaptureFixture) -> None:
+    """A short case of 10 units and a half of a long one of 90 are 55 %; a part of a case counts for its case."""
+    progress = TaskProgress("running cases", 2, Clock(), {"line/short": 10.0, "line/long": 90.0})
+    progress.finish_task("line/short")
+    assert progress.describe().startswith("10 %, ")
+    with follow(progress), caplog.at_level(logging.DEBUG, LOGGER.name):
+        StepSequence(LOGGER, "line/long/initial", {"mesh of the case": 1.0}).begin("mesh of the case")(0.5)
+    assert progress.describe().startswith("55 %, ")
+    progress.finish_task("line/long")
+    assert progress.describe().startswith("100 %, ")
+
+
+def test_work_is_simulated_time_by_pantographs_and_runs() -> None:
+    """The twin of a passage has two pantographs and a longer train on the same line, the same meshes and starts."""
+    single, twin = (
+        case
+        for name in ("320", "320-twin")
+        for case in select_cases([f"en50318-2018/ac-simple/{name}"])
+        if case.id.endswith(name)
+    )
+    times = [(case.end - case.start) / case.speed for case in (single, twin)]
+    assert estimate_work(twin) / estimate_work(single) == pytest.approx(2 * times[1] / times[0])
+    rest = [case for case in select_cases(["en50318-2018/ac-simple/320"]) if case.is_static]
+    assert all(0 < estimate_work(case) < estimate_work(single) / 5 for case in rest)
+
+
+def test_live_line_is_cut_to_the_width() -> None:
+    """A line that wraps leaves its rests on the terminal, and the share and the time stand first."""
+    text = "62 %, about 0:00:30 remaining, running cases: 1 of 2 finished"
+    (line,) = Console(width=40, file=io.StringIO()).render_lines(progress_display._LiveLine(lambda: text))
+    assert "".join(segment.text for segment in line) == text[:39] + "\N{HORIZONTAL ELLIPSIS}"
 
 
 def test_compilation_is_announced_at_once_in_a_log(capsys: pytest.CaptureFixture[str]) -> None:
@@ -90,17 +126,17 @@ def test_remaining_time_is_not_extrapolated_from_nothing() -> None:
     progress.begin_task("T1: release and linear decay")
     clock.now = 75.0
     assert progress.describe() == (
-        "identification: 0 of 5 finished, T1: release and linear decay, 0 %, 0:01:15 elapsed"
+        "0 %, 0:01:15 elapsed, identification: 0 of 5 finished, T1: release and linear decay"
     )
     progress = TaskProgress("guide", 4, clock := Clock())
     progress.reach("", 0, 0.0)
     clock.now = 10.0
     progress.reach("library/short", 1, 0.09)
-    assert progress.describe() == "guide: 1 of 4 finished, library/short, 9 %, 0:00:10 elapsed"
+    assert progress.describe() == "9 %, 0:00:10 elapsed, guide: 1 of 4 finished, library/short"
     progress = TaskProgress("self-test", 4, Clock())
     progress.begin_task("zero force")
     progress.begin_task("late force")
-    assert progress.describe().startswith("self-test: 1 of 4 finished, late force, 25 %")
+    assert progress.describe().endswith("self-test: 1 of 4 finished, late force")
 
 
 def test_repeated_tasks_raise_their_number() -> None:
@@ -108,37 +144,37 @@ def test_repeated_tasks_raise_their_number() -> None:
     progress = TaskProgress("identification", 2, Clock())
     for name in ("release", "poles", "poles again"):
         progress.begin_task(name)
-    assert progress.describe().startswith("identification: 2 of 3 finished, poles again, 67 %")
+    assert progress.describe().startswith("67 %, ")
 
 
 def test_cases_and_steps_that_are_running_are_named(caplog: pytest.LogCaptureFixture) -> None:
     progress = TaskProgress("running cases", 1, Clock())
-    assert progress.describe() == "running cases, 0:00:00 elapsed"
+    assert progress.describe() == "0:00:00 elapsed, running cases"
     with follow(progress), caplog.at_level(logging.DEBUG, "pantocheck"):
         StepSequence(LOGGER, "line/250", {"mesh of the case": 1.0}).begin("mesh of the case")(0.5)
-    assert progress.describe().startswith("running cases, line/250: mesh of the case, 50 %")
+    assert progress.describe().startswith("50 %, ")
     caplog.set_level(logging.INFO, LOGGER.name)
     progress = TaskProgress("running cases", 4, Clock())
     with follow(progress):
         for case in ("line/250", "line/300", "line/320"):
             report_remote(LOGGER, case)
     progress.finish_task("line/300")
-    assert progress.describe().startswith(
-        "running cases: 1 of 4 finished, line/250: in a process of its own, line/320: in a process of its own, 25 %"
+    assert progress.describe().endswith(
+        "running cases: 1 of 4 finished, line/250: in a process of its own, line/320: in a process of its own"
     )
     # A case may take a further step after its end; no more than all of the work is done.
     progress = TaskProgress("running cases", 1, Clock())
     progress.finish_task()
     with follow(progress), caplog.at_level(logging.DEBUG, LOGGER.name):
         StepSequence(LOGGER, "line/250", {"report": 1.0}).begin("report")(0.5)
-    assert ", 100 %" in progress.describe()
+    assert progress.describe().startswith("100 %, ")
     # A part such as the self-test runs many cases, which end without a message.
     progress = TaskProgress("guide", 4, Clock())
     progress.reach("", 0, 0.0)
     with follow(progress):
         for case in ("line/250", "line/300"):
             StepSequence(LOGGER, case, {"mesh of the case": 1.0, "mesh halved": 1.0}).begin("mesh halved")
-    assert progress.describe() == "guide: 0 of 4 finished, line/300: mesh halved, 0 %, 0:00:00 elapsed"
+    assert progress.describe() == "0 %, 0:00:00 elapsed, guide: 0 of 4 finished, line/300: mesh halved"
 
 
 def test_parts_of_a_study_continue_the_share_of_their_case(caplog: pytest.LogCaptureFixture) -> None:
@@ -192,7 +228,7 @@ def test_levels_and_handlers_are_restored() -> None:
     root = logging.getLogger("pantocheck")
     before = root.level, list(root.handlers)
     with follow_steps("anything") as progress:
-        assert progress.describe().startswith("anything, 0:00:0")
+        assert progress.describe().startswith("0:00:0")
         assert root.isEnabledFor(logging.DEBUG)
     assert (root.level, root.handlers) == before
 
