@@ -12,6 +12,8 @@ sys.path.insert(0, str(DOCS))
 from site_pages import write_generated_pages, write_pictures  # noqa: E402
 from site_pages.equations import add_equations  # noqa: E402
 
+from pantocheck.conformance.core.look import read_look  # noqa: E402
+
 write_generated_pages(DOCS / "generated")
 write_pictures(DOCS / "generated" / "pictures")
 
@@ -29,6 +31,19 @@ napoleon_numpy_docstring = False
 napoleon_use_rtype = False
 autosummary_generate = False
 html_theme = "furo"
+html_theme_options = {
+    f"{scheme}_css_variables": {
+        "color-brand-primary": colours["link"],
+        "color-brand-content": colours["link"],
+        "color-foreground-primary": colours["ink"],
+        "color-foreground-secondary": colours["soft"],
+        "color-background-primary": colours["paper"],
+        "color-background-secondary": colours["pale"],
+        "color-background-border": colours["line"],
+    }
+    for scheme, colours in read_look().items()
+    if scheme in ("light", "dark")
+}
 html_title = f"Pantocheck {version}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]

@@ -1,9 +1,36 @@
-"""Axes of the figures of the Python interface."""
+"""Axes of the figures of the Python interface, in the style of the reports."""
 
-from typing import Any
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ParamSpec
+
+from pantocheck.conformance.core.look import read_look
+
+INK: str = read_look()["light"]["ink"]
+GREY: str = read_look()["figure"]["grey"]
+
+Arguments = ParamSpec("Arguments")
 
 
-def provide_axes(axes: Any, width: float = 8.0, height: float = 3.0) -> Any:
+def in_report_style(plot: Callable[Arguments, Any]) -> Callable[Arguments, Any]:
+    """Let a function draw new figures in the style of the reports; given `axes` keep the style of the user."""
+
+    @wraps(plot)
+    def draw(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Any:
+        """Draw the figure; return its axes."""
+        if kwargs.get("axes") is not None:
+            return plot(*args, **kwargs)
+        import matplotlib
+
+        from pantocheck.conformance.core.figure_style import read_style
+
+        with matplotlib.rc_context(read_style()):
+            return plot(*args, **kwargs)
+
+    return draw
+
+
+def provide_axes(axes: Any, width: float = 6.9, height: float = 2.6) -> Any:
     """The given axes of matplotlib, or those of a new figure of this size [inch]."""
     if axes is not None:
         return axes

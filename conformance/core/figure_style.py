@@ -16,12 +16,19 @@ from matplotlib.ticker import NullFormatter
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import DrawnSymbol
+from pantocheck.conformance.core.look import read_look
 from pantocheck.conformance.core.reproducibility import read_source_date
 from pantocheck.conformance.core.texts import TEMPLATES
 
-INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"
-SHADES = (INK, "#6b747e", "#9aa3ac", "#c3cad2")
-LIMIT_FILL = "#d5dbe1"
+_LOOK = read_look()
+INK, GREY, PALE = _LOOK["light"]["ink"], _LOOK["figure"]["grey"], _LOOK["figure"]["ground"]
+SHADES: tuple[str, ...] = tuple(_LOOK["figure"]["shades"])
+BAR_FILLS: tuple[str, ...] = (*_LOOK["figure"]["bars"], "white", "white")
+LIMIT_FILL: str = _LOOK["figure"]["limit"]
+CROSS: str = _LOOK["light-verdict"]["fail"]
+CURVES: tuple[str, ...] = tuple(value for key, value in _LOOK["light"].items() if key.startswith("curve-"))
+"""Colours of curves that line style and lightness alone do not tell apart."""
+
 LINES = ("-", "--", "-.", ":")
 LIMIT_LINE = (0, (6, 2))
 FULL, HALF = 6.9, 3.4
@@ -48,7 +55,8 @@ Content = TypeVar("Content")
 
 
 @cache
-def _read_style() -> Any:
+def read_style() -> Any:
+    """Settings of matplotlib of the common style."""
     with as_file(TEMPLATES / "figure.mplstyle") as path:
         settings = dict(matplotlib.rc_params_from_file(path, use_default_template=True))
     # The backend is the choice of the importing program; `render_svg` names its canvas.
@@ -62,7 +70,7 @@ def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
     def render(*args: Arguments.args, **kwargs: Arguments.kwargs) -> str:
         """Paint the figure in the common style; return its SVG text."""
         read_source_date()  # refuse a wrong date: matplotlib reads it as well and fails without a message
-        with matplotlib.rc_context(_read_style()):
+        with matplotlib.rc_context(read_style()):
             buffer = io.StringIO()
             # No metadata: they would hold the date and the version of matplotlib.
             metadata = dict.fromkeys(("Date", "Creator", "Format", "Type"))
@@ -72,6 +80,13 @@ def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
         return text[text.index("<svg") :]
 
     return render
+
+
+def draw_symbol(axes: Axes, name: str, foot: tuple[float, float], half_width: float, length: float) -> None:
+    """Draw the symbol of a mass, spring or damper from its foot upwards, in the units of the axes."""
+    for line in _LOOK["symbol"][name]:
+        across, along = np.transpose(line)
+        axes.plot(foot[0] + half_width * across, foot[1] + length * along, color=INK, linewidth=0.9)
 
 
 def render_pdf_pages(paint: Callable[[Content], Figure], contents: Iterable[Content]) -> bytes:
@@ -86,7 +101,7 @@ def render_pdf_pages(paint: Callable[[Content], Figure], contents: Iterable[Cont
 
     buffer = io.BytesIO()
     with (
-        matplotlib.rc_context(_read_style()),
+        matplotlib.rc_context(read_style()),
         PdfPages(buffer, metadata=dict.fromkeys(("Creator", "Producer", "CreationDate"))) as pages,
     ):
         for content in contents:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Chart, Histogram, Traces, UpliftTrace
 from pantocheck.conformance.core.figure_style import (
+    CURVES,
     FULL,
     GREY,
     HALF,
@@ -139,7 +140,7 @@ REFERENCE_STYLE: PlotStyle = {
 """Style of the force of the reference; it is hidden where the force of the system lies on it."""
 
 
-STRIP_COLORS = {"front strip": "#9c6b30", "rear strip": "#3f7d8c"}
+STRIP_COLORS = {"front strip": CURVES[1], "rear strip": CURVES[2]}
 """Colours of the forces of both strips."""
 
 

@@ -10,7 +10,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from pantocheck.conformance.core.figure_data import DrawnSymbol, DrawnView, LineShape
-from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PALE, marker_style, render_svg
+from pantocheck.conformance.core.figure_style import (
+    FULL,
+    GREY,
+    HALF,
+    INK,
+    PALE,
+    draw_symbol,
+    marker_style,
+    render_svg,
+)
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.condition_sections import SPRINGLESS
@@ -140,7 +149,8 @@ def _draw_mass(
         _draw_spring(axes, spring[0], below, f"{format_plain(spring[1])} N/m")
     _draw_damper(axes, *damper, below)
     bottom = below + GAP
-    axes.fill_between(edges, bottom, bottom + BOX, facecolor=PALE, edgecolor=INK)
+    axes.fill_between(edges, bottom, bottom + BOX, facecolor=PALE, linewidth=0)
+    draw_symbol(axes, "mass", (sum(edges) / 2, bottom), (edges[1] - edges[0]) / 2, BOX)
     _write(axes, sum(edges) / 2, bottom + BOX / 2, text, "center")
 
 
@@ -152,9 +162,10 @@ def _draw_base(axes: Axes) -> None:
 
 def _draw_spring(axes: Axes, x: float, below: float, text: str) -> None:
     """Spring from `below` upwards, with its stiffness on the left; a contact without a spring is a line."""
-    offset = 0.06 * np.array([0, 0, 1, -1, 1, -1, 1, -1, 0, 0]) * (text != "constraint")
-    height = np.array([0.0, 0.18, 0.24, 0.35, 0.46, 0.57, 0.68, 0.77, 0.82, 1.0])
-    axes.plot(x + offset, below + GAP * height, color=INK, linewidth=0.9)
+    if text == "constraint":
+        axes.plot([x, x], [below, below + GAP], color=INK, linewidth=0.9)
+    else:
+        draw_symbol(axes, "spring", (x, below), 0.06, GAP)
     _write(axes, x - 0.12, below + GAP / 2, text, "right")
 
 
@@ -162,11 +173,7 @@ def _draw_damper(axes: Axes, x: float, damping: float, below: float) -> None:
     """Damper from `below` upwards, a piston in a cylinder, with its value on the right."""
     if damping == 0:
         return
-    low, piston, top = below + 0.3 * GAP, below + 0.52 * GAP, below + 0.7 * GAP
-    axes.plot([x - 0.07, x - 0.07, x + 0.07, x + 0.07], [top, low, low, top], color=INK, linewidth=0.9)
-    axes.plot([x, x], [below, low], color=INK, linewidth=0.9)
-    axes.plot([x, x], [piston, below + GAP], color=INK, linewidth=0.9)
-    axes.plot([x - 0.05, x + 0.05], [piston, piston], color=INK, linewidth=1.6)
+    draw_symbol(axes, "damper", (x, below), 0.07, GAP)
     _write(axes, x + 0.12, below + GAP / 2, f"{format_plain(damping)} N s/m", "left")
 
 

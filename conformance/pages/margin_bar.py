@@ -11,8 +11,12 @@ A value beyond the drawing is an arrow at its edge. The whisker is the error of 
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
+from pantocheck.conformance.core.look import read_look
+
 WIDTH, HEIGHT = 100.0, 18.0
 MIDDLE = HEIGHT / 2
+_LOOK = read_look()
+INK, GREY, LIMIT_FILL = _LOOK["light"]["ink"], _LOOK["figure"]["grey"], _LOOK["figure"]["limit"]
 # Distance of a limit from the middle, as a share of half the width.
 BAR_REACH = 0.56
 # A value closer to an edge is drawn as an arrow.
@@ -46,11 +50,11 @@ def draw_margin_bar(
     left = 0.0 if lower is None else across(lower)
     right = WIDTH if upper is None else across(upper)
     parts = [
-        f'<line x1="0" y1="{MIDDLE:g}" x2="{WIDTH:g}" y2="{MIDDLE:g}" stroke="#8a929b" stroke-width="1"/>',
-        f'<rect x="{left:.2f}" y="4" width="{max(right - left, 0):.2f}" height="{HEIGHT - 8:g}" fill="#d5dbe1"/>',
+        f'<line x1="0" y1="{MIDDLE:g}" x2="{WIDTH:g}" y2="{MIDDLE:g}" stroke="{GREY}" stroke-width="1"/>',
+        f'<rect x="{left:.2f}" y="4" width="{max(right - left, 0):.2f}" height="{HEIGHT - 8:g}" fill="{LIMIT_FILL}"/>',
     ]
     parts += [
-        f'<line x1="{x:.2f}" y1="1" x2="{x:.2f}" y2="{HEIGHT - 1:g}" stroke="#1a1d21" stroke-width="1.6"/>'
+        f'<line x1="{x:.2f}" y1="1" x2="{x:.2f}" y2="{HEIGHT - 1:g}" stroke="{INK}" stroke-width="1.6"/>'
         for limit, x in ((lower, left), (upper, right))
         if limit is not None
     ]
@@ -58,7 +62,7 @@ def draw_margin_bar(
     if error and EDGE <= x <= WIDTH - EDGE:
         low, high = max(across(value - error), 0), min(across(value + error), WIDTH)
         whisker = f"M{low:.2f} {MIDDLE:g}H{high:.2f}M{low:.2f} 6V12M{high:.2f} 6V12"
-        parts.append(f'<path d="{whisker}" stroke="#1a1d21" stroke-width="1"/>')
+        parts.append(f'<path d="{whisker}" stroke="{INK}" stroke-width="1"/>')
     parts += _list_strip([across(draw) for draw in draws])
     parts.append(_marker(x, verdict))
     size = f'viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" height="{HEIGHT:g}"'
@@ -71,7 +75,7 @@ def _list_strip(places: Sequence[float]) -> Iterator[str]:
     for column, count in sorted(counts.items()):
         x, shade = column * STRIP_WIDTH - STRIP_WIDTH / 2, max(count / max(counts.values()), 0.1)
         yield (
-            f'<rect x="{x:g}" y="{HEIGHT - 3:g}" width="{STRIP_WIDTH:g}" height="3" fill="#1a1d21" '
+            f'<rect x="{x:g}" y="{HEIGHT - 3:g}" width="{STRIP_WIDTH:g}" height="3" fill="{INK}" '
             f'fill-opacity="{shade:.2f}"/>'
         )
 
@@ -86,7 +90,7 @@ def _scale(lower: float | None, upper: float | None) -> tuple[float, float]:
 
 
 def _marker(x: float, verdict: str) -> str:
-    ink = {"pass": "#1b5e3a", "fail": "#8c1d18"}.get(verdict, "#1a1d21")
+    ink = read_look()["light-verdict"][verdict] if verdict in ("pass", "fail") else INK
     if x < EDGE:
         return f'<path d="M1 {MIDDLE:g}l9 -6v12z" fill="{ink}"/>'
     if x > WIDTH - EDGE:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from hashlib import sha256
 
+from pantocheck.conformance.core.look import insert_look
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.translation import translate_marked
 from pantocheck.conformance.results.report_files import LANGUAGES
@@ -74,7 +75,7 @@ def read_results_code(language: str = LANGUAGES[0]) -> PageCode:
 
 
 def _read(name: str) -> str:
-    return (TEMPLATES / name).read_text("utf-8")
+    return insert_look((TEMPLATES / name).read_text("utf-8"))
 
 
 def name_scripts(parts: tuple[str, ...]) -> tuple[str, ...]:

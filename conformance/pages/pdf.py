@@ -11,6 +11,7 @@ import matplotlib
 from matplotlib.ft2font import FT2Font
 
 from pantocheck.conformance.core.extras import refuse_missing_package
+from pantocheck.conformance.core.look import read_look
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.document import NAME, Document, encode_attachment, to_plain
 from pantocheck.conformance.pages.translation import collect_marked, translate, translate_document, translate_tree
@@ -31,6 +32,7 @@ def render_pdf(document: Document) -> bytes:
     data = {
         "document": bind_page_units(to_plain(replace(translate_document(document), results=None, scenes=()))),
         "attachment": None,
+        "look": read_look(),
         "verdicts": translate_tree(words["verdict"], document.language),
         "trusts": translate_tree(words["trust"], document.language),
         "texts": collect_marked(b"".join(files.values()).decode(), document.language)
@@ -73,6 +75,7 @@ def replace_missing_glyphs(text: str) -> str:
 def render_signature_box(lines: Sequence[str], width: int, height: int) -> bytes:
     """PDF of one untagged page [points] with lines of text in a frame, each shrunk to the width of the box."""
     data = {"lines": [replace_missing_glyphs(line) for line in lines], "width": width, "height": height}
+    data["ink"] = read_look()["light"]["ink"]
     files = {
         "main.typ": (TEMPLATES / "signature-box.typ").read_bytes(),
         "box.json": json.dumps(data).encode("ascii"),

@@ -11,9 +11,12 @@ from matplotlib.figure import Figure
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Chart, Mark, Series
 from pantocheck.conformance.core.figure_style import (
+    BAR_FILLS,
+    CROSS,
     FULL,
     HALF,
     INK,
+    LIMIT_FILL,
     LIMIT_LINE,
     LINES,
     SHADES,
@@ -25,10 +28,8 @@ from pantocheck.conformance.core.figure_style import (
 from pantocheck.conformance.results.campaign_format import ValueMap
 
 MARKERS = "os^Dv"
-FILLS = ("#3a424a", "#aab3bc", "white", "white")
 HATCHES = ("", "", "////", "....")
 BAND_OPACITY = 0.18
-CROSS = "#8c1d18"
 TICK_WIDTH = 10
 """Characters on a line of a tick label."""
 
@@ -128,7 +129,7 @@ def _draw_bars(axes: Axes, series: Series, number: int, count: int) -> None:
         places,
         series.y,
         0.9 * width,
-        color=FILLS[number % len(FILLS)],
+        color=BAR_FILLS[number % len(BAR_FILLS)],
         hatch=HATCHES[number % len(HATCHES)],
         edgecolor=INK,
         linewidth=0.7,
@@ -140,7 +141,7 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
     along = mark.axis == "x"
     if mark.high is not None:
         (axes.axvspan if along else axes.axhspan)(
-            mark.low, mark.high, color="#e1e6ea", zorder=0, linewidth=0, label=mark.label
+            mark.low, mark.high, color=LIMIT_FILL, zorder=0, linewidth=0, label=mark.label
         )
     else:
         (axes.axvline if along else axes.axhline)(
@@ -149,7 +150,7 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
 
 
 # Tornado chart: changes of a value by each input, the largest at the top.
-TORNADO_FILLS = ("#3a424a", "#c3cad2")
+TORNADO_FILLS = (BAR_FILLS[0], SHADES[3])
 """Fills of the bars of both signs of the change of an input."""
 
 TICK_NAME_WIDTH = 34

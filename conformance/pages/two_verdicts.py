@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from html import escape
 
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.look import read_look
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pages import document as doc
@@ -211,8 +212,6 @@ def _subtract_converged(row: Criterion) -> Criterion:
 
 # A badge for a README as SVG.
 LABEL = "EN 50318 style"
-COLOURS = {"pass": "#1b5e3a", CLOSE: "#8a5a00", "info": "#24496e", "skip": "#625000", "fail": "#8c1d18"}
-COLOURS |= {"unconfirmed": "#7a3b00", "undecided": "#7a3b00", "error": "#5a1a66"}
 LETTER, MARGIN = 6.6, 8
 """Width of a letter and margin beside the text [px]; every font is fitted to these widths."""
 
@@ -243,7 +242,7 @@ def render_badge(results: Results) -> str:
     widths = [round(len(text) * LETTER + 2 * MARGIN) for text in texts]
     total = sum(widths)
     starts = (0, widths[0])
-    fills = ("#3b4249", COLOURS[mark_results(results)])
+    fills = (read_look()["figure"]["bars"][0], read_look()["light-verdict"][mark_results(results)])
     name = escape(": ".join(texts), quote=False)
     parts = [
         f'<rect x="{x}" width="{width}" height="20" fill="{fill}"/>'

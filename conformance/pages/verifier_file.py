@@ -4,6 +4,7 @@ import json
 from functools import cache
 from hashlib import sha256
 
+from pantocheck.conformance.core.look import insert_look
 from pantocheck.conformance.core.results_part import Suite
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.page_code import PageCode, join_scripts
@@ -47,7 +48,7 @@ def build_verifier(version: str, digest: str) -> bytes:
     tables = {"languages": _list_read_words(), "labels": labels, "words": words, "texts": texts, "suite": suite}
     for name, table in tables.items():
         script = script.replace(f'"@{name}@"', json.dumps(table, sort_keys=True))
-    style = (VERIFIER_FOLDER / "verifier.css").read_text("utf-8")
+    style = insert_look((VERIFIER_FOLDER / "verifier.css").read_text("utf-8"))
     page = (VERIFIER_FOLDER / "verifier.html").read_text("utf-8")
     library = (SIGNATURE_LIBRARY / "pkijs.min.js").read_text("utf-8")
     licence = (SIGNATURE_LIBRARY / "LICENSE").read_text("utf-8")

@@ -11,6 +11,7 @@ from site_pages.format_pages import build_format_page
 from site_pages.guide_tables import build_guide_counts
 from site_pages.input_tables import build_condition_table, build_power_table
 from site_pages.interface_pages import build_interface_page
+from site_pages.look_pictures import write_look_pictures
 from site_pages.page_list import build_page_list
 from site_pages.picture_folder import keep_pictures
 from site_pages.quantity_pages import build_quantity_page
@@ -57,7 +58,8 @@ def write_generated_pages(folder: Path) -> None:
 
 
 def write_pictures(folder: Path) -> None:
-    """Write the pictures of the start page and of the tutorials, unless nothing has changed since the last time."""
+    """Write the pictures of start page, look and tutorials, unless nothing has changed since the last time."""
     keep_pictures(folder / "start", "", write_start_pictures)
+    keep_pictures(folder / "look", "", write_look_pictures)
     for page in TUTORIALS:
         keep_pictures(folder / page.stem, page.read_text("utf-8"), partial(write_tutorial_pictures, page))

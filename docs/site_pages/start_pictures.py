@@ -11,6 +11,7 @@ from typing import Any
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs"))
 
+from pantocheck.conformance.core.figure_style import CURVES, PALE, read_style  # noqa: E402
 from site_pages.page_run import build_environment  # noqa: E402
 from site_pages.picture_folder import draw_page  # noqa: E402
 
@@ -23,9 +24,6 @@ LENGTH_M = 275.0
 
 NAMES = ("contact-force.svg", "line.svg", "spectrum.svg", "decay.svg", "certificate.png")
 """Files that `write_start_pictures` writes."""
-
-SVG = {"svg.hashsalt": "pantocheck", "svg.fonttype": "none", "axes.spines.top": False, "axes.spines.right": False}
-"""Text stays text, and the same data give the same file."""
 
 
 def write_start_pictures(folder: Path) -> None:
@@ -45,7 +43,7 @@ def draw_contact_force(target: Path) -> None:
 
     run = open_case(TWO_PANTOGRAPHS).simulate()
     figure, axes = _start_figure(7.0, 2.6)
-    for pantograph, style in ((1, {"color": "#1b4f72"}), (2, {"color": "#c0392b", "linestyle": "--"})):
+    for pantograph, style in ((1, {"color": CURVES[0]}), (2, {"color": CURVES[1], "linestyle": "--"})):
         signals = run.signals(pantograph)
         deviation = run.quantity("std_force_N", pantograph)
         label = f"{('leading', 'rear')[pantograph - 1]} pantograph, standard deviation {deviation:.1f} N"
@@ -63,7 +61,7 @@ def draw_spectrum(target: Path) -> None:
     run = open_case(ONE_PANTOGRAPH).simulate()
     figure, axes = _start_figure(3.4, 2.4)
     run.plot_spectrum(axes=axes)
-    axes.axvspan(20, 50, color="#1b4f72", alpha=0.12, linewidth=0)
+    axes.axvspan(20, 50, color=PALE, linewidth=0)
     axes.text(
         35, 0.9 * axes.get_ylim()[1], f"20-50 Hz:\n{run.quantity('rms_20_50_N'):.1f} N RMS", ha="center", va="top"
     )
@@ -80,7 +78,7 @@ def draw_decay(folder: Path) -> None:
     names = record.read_text(encoding="utf-8").split("\n", 1)[0].split(",")
     table = np.loadtxt(record, delimiter=",", skiprows=1)
     figure, axes = _start_figure(3.4, 2.4)
-    axes.plot(table[:, 0], table[:, 3], color="#1b4f72", linewidth=0.6)
+    axes.plot(table[:, 0], table[:, 3], color=CURVES[0], linewidth=0.6)
     axes.set(xlabel="time [s]", ylabel="acceleration [m/s2]", ylim=(-3, 3), xlim=(0, table[-1, 0]))
     assert names[0] == "time_s"
     _save(figure, folder / "decay.svg")
@@ -98,7 +96,7 @@ def _start_figure(width: float, height: float) -> tuple[Any, Any]:
     import matplotlib
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context(SVG):
+    with matplotlib.rc_context(read_style()):
         figure = Figure(figsize=(width, height), layout="constrained")
         return figure, figure.subplots()
 
@@ -106,7 +104,7 @@ def _start_figure(width: float, height: float) -> tuple[Any, Any]:
 def _save(figure: Any, target: Path) -> None:
     import matplotlib
 
-    with matplotlib.rc_context(SVG):
+    with matplotlib.rc_context(read_style()):
         figure.savefig(target, metadata={"Date": None})
 
 

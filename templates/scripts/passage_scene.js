@@ -16,6 +16,9 @@ const SHAPE_ROOM_M = 0.5;
 const MASS_GAP = 30;
 const MASS_HALF = 12;
 
+/** Symbols as lines of points, across and along. */
+const SYMBOLS = @look.symbol@;
+
 /** Width of a line by the kind of a wire [px]. */
 const WIRE_WIDTHS = { contact_wire: 2.4, messenger_wire: 1.5, stitch_wire: 1 };
 
@@ -267,10 +270,9 @@ class PassageScene {
     this.write(text, Math.min(x + MASS_HALF + 6, this.width - 70), bottom - 4, tone);
   }
 
-  /** Zigzag of a spring between two heights [px]. */
+  /** Symbol of a spring between two heights [px]. */
   drawSpring(x, top, bottom, tone) {
-    const points = Array.from({ length: 8 }, (_, i) => [x + (i % 7 === 0 ? 0 : i % 2 ? 5 : -5), top + ((bottom - top) * i) / 7]);
-    this.stroke(points, tone, 1.2);
+    for (const line of SYMBOLS.spring) this.stroke(line.map(([across, along]) => [x + 5 * across, bottom + along * (top - bottom)]), tone, 1.2);
   }
 
   /** Stagger of the wires, and the contact points of the pantographs. */

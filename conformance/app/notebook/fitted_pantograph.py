@@ -17,7 +17,7 @@ from pantocheck.conformance.comparison.pantograph_fit import (
 )
 from pantocheck.conformance.comparison.response_comparison import compare_responses, model_stiffness
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
-from pantocheck.conformance.core.drawn_axes import label_logarithms, provide_axes
+from pantocheck.conformance.core.drawn_axes import INK, in_report_style, label_logarithms, provide_axes
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
@@ -81,6 +81,7 @@ class FittedPantograph:
         pantograph = validate_model(self.tables, PantographFile, "fitted pantograph")
         return model_stiffness(pantograph, np.asarray(frequency_Hz, dtype=np.float64))
 
+    @in_report_style
     def plot(self, axes: Any = None) -> Any:
         """Plot the modulus of the apparent mass over the frequency, measured and fitted; returns matplotlib axes.
 
@@ -93,7 +94,7 @@ class FittedPantograph:
             axes.plot(record.frequency, np.abs(record.stiffness) / squared, mark, markersize=4, label=record.source)
         frequency = np.geomspace(*self.report.band_Hz, 400)
         fitted = np.abs(self.dynamic_stiffness(frequency)) / (2 * np.pi * frequency) ** 2
-        axes.loglog(frequency, fitted, color="0.1", linewidth=1.2, label=f"chain of {self.report.masses} masses")
+        axes.loglog(frequency, fitted, color=INK, linewidth=1.2, label=f"chain of {self.report.masses} masses")
         axes.set(xlabel="frequency [Hz]", ylabel="apparent mass [kg]")
         label_logarithms(axes)
         axes.legend()

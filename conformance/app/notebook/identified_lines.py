@@ -15,7 +15,7 @@ from pantocheck.conformance.app.notebook.display import (
 )
 from pantocheck.conformance.app.notebook.opened_case import OpenedCase
 from pantocheck.conformance.app.notebook.opened_drop import OpenedDrop
-from pantocheck.conformance.core.drawn_axes import provide_axes
+from pantocheck.conformance.core.drawn_axes import INK, in_report_style, provide_axes
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.texts import count_noun
@@ -95,6 +95,7 @@ class FittedDamping:
         columns = {"frequency_Hz": comparison.frequency_Hz, **comparison.models}
         return tabulate_columns({name: np.array(values) for name, values in columns.items()})
 
+    @in_report_style
     def plot(self, axes: Any = None) -> Any:
         """Plot the damping ratios over the frequency, identified and of the models; returns matplotlib axes.
 
@@ -129,7 +130,7 @@ def _draw_intervals(
     """Draw identified damping ratios with their nominal 95 % intervals in percent."""
     values, widths = [100 * value for value in ratio], [196 * value for value in std]
     label = "identified, nominal 95 % interval"
-    axes.errorbar(frequency_Hz, values, widths, fmt="o", color="0.1", markersize=4, capsize=capsize, label=label)
+    axes.errorbar(frequency_Hz, values, widths, fmt="o", color=INK, markersize=4, capsize=capsize, label=label)
 
 
 def refuse_other_modes(modes: tuple[Mode, ...], catenary: Catenary, name: str) -> None:
@@ -186,6 +187,7 @@ class IdentifiedLines:
         """
         return tabulate_rows([mode.model_dump(mode="json") for mode in self.modes], MODE_KEYS)
 
+    @in_report_style
     def plot(self, axes: Any = None) -> Any:
         """Plot the damping ratios of the certain modes over their frequency, with nominal 95 % intervals; returns axes.
 

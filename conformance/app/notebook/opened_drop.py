@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.app.notebook.display import describe_in_one_line, tabulate_columns
-from pantocheck.conformance.core.drawn_axes import provide_axes
+from pantocheck.conformance.core.drawn_axes import INK, in_report_style, provide_axes
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import SI_UNITS
@@ -41,6 +41,7 @@ class OpenedDrop:
             {"time_s": self.record.time, **dict(zip(self.channels, self.record.signals.T, strict=True))}
         )
 
+    @in_report_style
     def plot(self, channel: str | None = None, axes: Any = None) -> Any:
         """Plot the signal of a channel over the time; returns matplotlib axes.
 
@@ -53,7 +54,7 @@ class OpenedDrop:
         """
         column = 0 if channel is None else self.channels.index(channel)
         axes, record = provide_axes(axes), self.record
-        axes.plot(record.time, record.signals[:, column], color="0.1", linewidth=0.6)
+        axes.plot(record.time, record.signals[:, column], color=INK, linewidth=0.6)
         label = f"{record.quantity} of {self.channels[column]} [{SI_UNITS[record.quantity]}]"
         axes.set(xlabel="time [s]", ylabel=label, title=record.name)
         return axes

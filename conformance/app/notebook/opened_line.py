@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from pantocheck.conformance.app.notebook.display import describe_in_one_line, tabulate_columns
 from pantocheck.conformance.cases.case_parts import locate_part, read_line_file, read_pantograph_file
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.drawn_axes import label_logarithms, provide_axes
+from pantocheck.conformance.core.drawn_axes import GREY, INK, in_report_style, label_logarithms, provide_axes
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.line.catenary_model import discretise_line
@@ -24,9 +24,9 @@ from pantocheck.model.description.one_thread import use_one_thread
 from pantocheck.model.description.pantograph import apparent_mass, frequencies
 
 WIRE_STYLES = {
-    Kind.CONTACT_WIRE: {"color": "0.1", "linewidth": 1.6},
-    Kind.MESSENGER_WIRE: {"color": "tab:blue", "linewidth": 1.2},
-    Kind.STITCH_WIRE: {"color": "tab:orange", "linewidth": 1.2},
+    Kind.CONTACT_WIRE: {"color": INK, "linewidth": 1.6},
+    Kind.MESSENGER_WIRE: {"color": INK, "linewidth": 0.9},
+    Kind.STITCH_WIRE: {"color": INK, "linewidth": 0.6},
 }
 
 
@@ -120,6 +120,7 @@ class OpenedLine:
             raise InputError("elasticity, force_N", f"found {force_N:g} N", "Give a force above zero, in newtons.")
         return 1e3 * static_uplift(self.discretised, positions, force_N) / force_N
 
+    @in_report_style
     def plot(self, first_span: int = 1, last_span: int | None = None, axes: Any = None) -> Any:
         """Plot some spans in elevation, the height enlarged; returns matplotlib axes.
 
@@ -137,7 +138,7 @@ class OpenedLine:
         for mark in list_element_marks(self.catenary):
             if start <= mark.position <= end and not mark.text:
                 height = find_deflection(self.discretised, mark.wire, "z", mark.position)
-                style = {"color": "0.1", "markerfacecolor": "white", "markersize": 5}
+                style = {"color": INK, "markerfacecolor": "white", "markersize": 5}
                 axes.plot(mark.position, height, mark.symbol.marker, **style)
         axes.set(xlabel="position along the track [m]", ylabel="height [m]", title=self.file.title)
         return axes
@@ -166,7 +167,7 @@ class OpenedLine:
             if start <= dropper.position <= end:
                 x = np.full(2, dropper.position)
                 ends = [find_deflection(line, name, "z", dropper.position) for name in (dropper.lower, dropper.upper)]
-                yield x, np.array(ends), {"color": "0.55", "linewidth": 0.8}
+                yield x, np.array(ends), {"color": GREY, "linewidth": 0.6}
 
 
 def open_line(name: str | Path, element_m: float = 0.5) -> OpenedLine:
@@ -225,6 +226,7 @@ class OpenedPantograph:
             raise InputError("apparent_mass_kg", f"found {frequency.min():g} Hz", "Give frequencies above zero.")
         return np.asarray(apparent_mass(self.model, frequency))
 
+    @in_report_style
     def plot(self, frequency_Hz: ArrayLike | None = None, axes: Any = None) -> Any:
         """Plot the magnitude of the apparent mass; returns matplotlib axes.
 

@@ -11,7 +11,7 @@ from pantocheck.conformance.app.notebook.display import describe_in_one_line, ta
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.comparison.compared_run import ComparedRun, read_record_run
 from pantocheck.conformance.comparison.run_comparison import compare_subjects
-from pantocheck.conformance.core.drawn_axes import provide_axes
+from pantocheck.conformance.core.drawn_axes import GREY, INK, in_report_style, provide_axes
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.texts import count_noun
@@ -104,6 +104,7 @@ class OpenedRun:
             columns["contact_height_m"] = signals.height
         return tabulate_columns(columns)
 
+    @in_report_style
     def plot(self, pantograph: int = 1, axes: Any = None) -> Any:
         """Plot the force over the position, as delivered and as graded; returns matplotlib axes.
 
@@ -114,12 +115,13 @@ class OpenedRun:
         signals = self.run.signals[pantograph]
         axes = provide_axes(axes)
         position = signals.position[signals.inside]
-        axes.plot(position, signals.delivered, color="0.7", linewidth=0.8, label="as delivered")
-        axes.plot(position, signals.graded, color="0.1", linewidth=1.2, label="0-20 Hz")
+        axes.plot(position, signals.delivered, color=GREY, linewidth=0.8, label="as delivered")
+        axes.plot(position, signals.graded, color=INK, linewidth=1.2, label="0-20 Hz")
         axes.set(xlabel="position along the track [m]", ylabel="contact force [N]", title=self._title(pantograph))
         axes.legend()
         return axes
 
+    @in_report_style
     def plot_spectrum(self, pantograph: int = 1, axes: Any = None) -> Any:
         """Plot the amplitude spectrum of the force up to 50 Hz; returns matplotlib axes.
 
@@ -129,7 +131,7 @@ class OpenedRun:
         """
         signals: PantographSignals = self.run.signals[pantograph]
         axes = provide_axes(axes)
-        axes.plot(*amplitude_spectrum(signals.delivered, signals.force.rate, signals.highest_frequency), color="0.1")
+        axes.plot(*amplitude_spectrum(signals.delivered, signals.force.rate, signals.highest_frequency), color=INK)
         axes.set(xlabel="frequency [Hz]", ylabel="amplitude [N]", title=self._title(pantograph))
         return axes
 
@@ -244,6 +246,7 @@ class ComparedRuns:
             raise KeyError("; ".join(owner.reasons) or f"no force of {name}")
         return found[name]
 
+    @in_report_style
     def plot(self, pantograph: int = 1, axes: Any = None) -> Any:
         """Plot the graded forces of all runs over the position; returns matplotlib axes.
 

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from helpers.shown_page import show_certificate
+from pantocheck.conformance.core.look import insert_look
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.document import Document, PlainHeader
 from pantocheck.conformance.pages.html import render_html
@@ -172,34 +173,11 @@ def test_tables_become_cards_on_a_narrow_screen(page_text: str) -> None:
     assert all("data-label" in attrs for attrs in cells)
 
 
-def luminance(colour: str) -> float:
-    """Relative luminance of a colour [-], WCAG 2.1."""
-    channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
-    return sum(weight * channel for weight, channel in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
-
-
-def contrast(first: str, second: str) -> float:
-    """Contrast ratio of two colours [-], WCAG 2.1."""
-    dark, light = sorted(map(luminance, (first, second)))
-    return (light + 0.05) / (dark + 0.05)
-
-
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_css_colours_have_contrast_against_the_paper(scheme: str) -> None:
-    """WCAG AA requires 4.5 for small text; the warning box is close to the paper, hence 5."""
+def test_style_sheet_states_no_colour_and_no_size_of_its_own() -> None:
+    """They stand in the look, which `core/test_look.py` checks; sizes in `em` are relative to it."""
     style = (TEMPLATES / "page.css").read_text("utf-8")
-    dark = style.index("@media screen and (prefers-color-scheme: dark)")
-    part = style[:dark] if scheme == "light" else style[dark : style.index("\n}", dark)]
-    [paper] = re.findall(r"--paper: (#[0-9a-f]{6})", part)
-    inks = re.findall(r"--(?:accent|ink|soft|link): (#[0-9a-f]{6})", part)
-    assert len(inks) == 10
-    assert all(contrast(ink, paper) > 5 for ink in inks)
-    curves = re.findall(r"--(?:curve-\d|faint): (#[0-9a-f]{6})", part)
-    assert len(curves) == 7
-    assert all(contrast(curve, paper) > 3 for curve in curves)  # WCAG AA for graphical objects
-    [box] = re.findall(r"--caution-paper: (#[0-9a-f]{6})", part)
-    [ink] = re.findall(r"--ink: (#[0-9a-f]{6})", part)
-    assert contrast(ink, box) > 5
-    # A colour outside of the two schemes would not follow them.
-    assert not re.search(r"#[0-9a-f]{3,6}\b", style[style.index("* { box-sizing") :])
+    assert not re.search(r"#[0-9a-f]{3,6}\b", style)
+    assert not re.findall(r"font-size: [\d.]+rem", style.replace("font-size: 1rem", ""))
+    shown = insert_look(style)
+    assert "@look" not in shown
+    assert set(re.findall(r"var\((--[\w-]+)", shown)) <= set(re.findall(r"(--[\w-]+):", shown))

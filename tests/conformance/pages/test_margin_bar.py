@@ -29,7 +29,7 @@ def test_margin_bar_marks_differ_in_shape() -> None:
         draw_margin_bar(value, 26, 31, None, verdict)
         for value, verdict in ((28, "pass"), (32, "fail"), (28, "info"), (99, "fail"))
     )
-    assert 'r="4.5" fill="#1b5e3a"' in inside
+    assert 'r="4.5" fill="#0b6157"' in inside
     assert "<circle" not in outside
     assert 'r="4.5" fill="#ffffff"' in uncounted
     assert "l-9 -6v12z" in beyond

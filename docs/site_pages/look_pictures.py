@@ -1,0 +1,72 @@
+"""Pictures of the page on the look: colours, sizes of letters and symbols."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pantocheck.conformance.core.figure_style import FULL, HALF, draw_symbol, render_svg
+from pantocheck.conformance.core.look import read_look
+
+
+def write_look_pictures(folder: Path) -> None:
+    """Write the pictures of the page on the look."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, draw in (("colours", draw_colours), ("sizes", draw_sizes), ("symbols", draw_symbols)):
+        (folder / f"{name}.svg").write_text(draw(), "utf-8")
+
+
+@render_svg
+def draw_colours() -> Any:
+    """Colours of both schemes on their papers, with the names of their uses."""
+    look = read_look()
+    figure, panels = _start_figure(FULL, 2.4, 2)
+    for axes, scheme in zip(panels, ("light", "dark"), strict=True):
+        colours: Mapping[str, str] = look[scheme] | look[f"{scheme}-verdict"]
+        axes.set(xlim=(0, 3), ylim=(-9, 1))
+        axes.add_patch(_fill(0, -9, 3, 10, colours["paper"]))
+        shown = [name for name in colours if name != "paper"]
+        for number, name in enumerate(shown):
+            column, row = divmod(number, 8)
+            axes.add_patch(_fill(column + 0.05, -row - 0.3, 0.25, 0.6, colours[name]))
+            axes.text(column + 0.34, -row, name, color=colours["ink"], va="center", fontsize=7)
+    return figure
+
+
+@render_svg
+def draw_sizes() -> Any:
+    """Sizes of letters on paper, by their names."""
+    sizes: Mapping[str, float] = read_look()["paper-size"]
+    figure, [axes] = _start_figure(FULL, 1.9, 1)
+    below = 0.0
+    for name, size in sizes.items():
+        axes.text(0.01, -below, f"{name}, {size:g} pt", fontsize=size, va="top")
+        below += size + 5
+    axes.set(xlim=(0, 1), ylim=(-below, 0))
+    return figure
+
+
+@render_svg
+def draw_symbols() -> Any:
+    """Symbols of mass, spring and damper."""
+    figure, [axes] = _start_figure(HALF, 1.0, 1)
+    for number, name in enumerate(read_look()["symbol"]):
+        draw_symbol(axes, name, (number, 0.3), 0.3 if name == "mass" else 0.1, 0.7)
+        axes.text(number, 0.05, name, ha="center", fontsize=8)
+    axes.set(xlim=(-0.5, 2.5), ylim=(0, 1.05))
+    return figure
+
+
+def _fill(x: float, y: float, width: float, height: float, colour: str) -> Any:
+    from matplotlib.patches import Rectangle
+
+    return Rectangle((x, y), width, height, facecolor=colour, edgecolor="none")
+
+
+def _start_figure(width: float, height: float, columns: int) -> tuple[Any, Any]:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    panels = figure.subplots(1, columns, squeeze=False)[0]
+    for axes in panels:
+        axes.set_axis_off()
+    return figure, panels
