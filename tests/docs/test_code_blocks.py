@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted(DOCS.glob("*.md")), *sorted(DOCS.glob("tutorials/*.md"))]
 HOW_TO = (
-    "compare", "identity", "line-update", "pantograph-response", "pytest", "python",
+    "compare", "identity", "line-update", "look", "pantograph-response", "pytest", "python",
     "site", "systems", "verification", "verify",
 )  # fmt: skip
 """Pages whose blocks run in their order."""
