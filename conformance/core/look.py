@@ -9,7 +9,7 @@ from typing import Any
 
 from pantocheck.conformance.core.texts import TEMPLATES
 
-MARK = re.compile(r"@look\.([a-z-]+)@")
+LOOK_PART = re.compile(r"@look\.([a-z-]+)@")
 """Place of a part of the look in a style sheet or script."""
 
 
@@ -21,7 +21,7 @@ def read_look() -> Mapping[str, Any]:
 
 def insert_look(text: str) -> str:
     """Text of a style sheet or script with the parts of the look at their marks."""
-    return MARK.sub(lambda found: _write_part(found[1]), text)
+    return LOOK_PART.sub(lambda found: _write_part(found[1]), text)
 
 
 def _write_part(name: str) -> str:
