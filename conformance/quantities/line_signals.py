@@ -101,9 +101,15 @@ class LineSignals:
         missing = expected[~(distance <= SUPPORT_TOLERANCE_M)]
         if missing.size:
             places = ", ".join(f"{position:g} m" for position in missing[:5])
+            stated = np.abs(missing[:, None] - self.support_position).min(axis=1) <= SUPPORT_TOLERANCE_M
+            cut = (
+                f"; samples are needed from {UPLIFT_STRETCH_M:g} m before to {UPLIFT_STRETCH_M:g} m past the support"
+                if stated.any()
+                else ""
+            )
             raise SupportsMissing(
                 f"the record has no uplift at {missing.size} of {expected.size} supports of the analysis section: "
-                f"{places}{', ...' if missing.size > 5 else ''}"
+                f"{places}{', ...' if missing.size > 5 else ''}{cut}"
             )
         positions = self._at_supports[2]
         if positions is None:

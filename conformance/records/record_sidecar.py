@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from pantocheck.conformance.core.input_error import suggest_names
 from pantocheck.conformance.core.sourced_table import (
@@ -31,6 +31,9 @@ from pantocheck.conformance.records.sidecar_tables import (
 from pantocheck.conformance.records.source_tables import ColumnFile, SourceTable
 
 RECORD_SCHEMA = "pantocheck.record/1"
+
+CLOSEST_SUPPORTS_M = 0.5
+"""Smallest distance of two supports [m]."""
 
 
 class RecordSidecar(PassageTable, ColumnFile):
@@ -64,6 +67,46 @@ class RecordSidecar(PassageTable, ColumnFile):
     """Distances between successive pantographs in running order, if not in the table [m]."""
     support_position_m: NumberList | None = None
     """Positions of the supports with an uplift, in the order of the table [m]."""
+    evaluated_km: Annotated[NumberList | None, Field(min_length=2, max_length=2)] = None
+    """Ends of the analysis section as kilometres of the line, instead of evaluated_m."""
+    support_km: NumberList | None = None
+    """Kilometres of these supports, instead of support_position_m."""
+
+    @cross_check
+    def _check_kilometres(self) -> Problems:
+        pairs = {
+            "evaluated_km": ("evaluated_m", self.evaluated_m),
+            "support_km": ("support_position_m", self.support_position_m),
+        }
+        for key, (other, metres) in pairs.items():
+            if getattr(self, key) is None:
+                continue
+            if self.track is None:
+                hint = "State zero_km and kilometres in [track]."
+                yield validation_problem(key, "the table track is missing", hint)
+            if metres is not None:
+                yield validation_problem(key, f"{other} gives the same", f"Leave out {key} or {other}.")
+        places = sorted(self.support_position_m or ())
+        if any(later - earlier < CLOSEST_SUPPORTS_M for earlier, later in pairwise(places)):
+            found = f"two supports are less than {CLOSEST_SUPPORTS_M:g} m apart"
+            yield validation_problem("support_position_m", found, "Give metres, or the kilometres as support_km.")
+
+    @model_validator(mode="after")
+    def _place_kilometres(self) -> Self:
+        """Positions x of the section and the supports from their kilometres."""
+        if self.track is None or (self.evaluated_km is None and self.support_km is None):
+            return self
+        changes: dict[str, object] = {"evaluated_km": None, "support_km": None}
+        if self.evaluated_km is not None:
+            changes["evaluated_m"] = tuple(sorted(map(self._place, self.evaluated_km)))
+        if self.support_km is not None:
+            changes["support_position_m"] = tuple(map(self._place, self.support_km))
+        return self.model_copy(update=changes)
+
+    def _place(self, kilometre: float) -> float:
+        """Position x of a kilometre, to a tenth of a millimetre [m]."""
+        assert self.track is not None  # required by the cross check
+        return round(self.track.place(kilometre), 4)
 
     @cross_check
     def _check_consistency(self) -> Problems:
@@ -168,4 +211,8 @@ class RecordSidecar(PassageTable, ColumnFile):
 
     def rows(self, per: str) -> int:
         """Number of rows of a channel with one row per `pantograph`, `support` or `record`."""
-        return {"record": 1, "pantograph": self.pantographs, "support": len(self.support_position_m or ())}[per]
+        return {
+            "record": 1,
+            "pantograph": self.pantographs,
+            "support": len(self.support_position_m or self.support_km or ()),
+        }[per]

@@ -139,6 +139,11 @@ def extend_train(time: RealArray, position: RealArray, speed: float) -> PlacedTr
 def align_source(source: SourceSamples, train: PlacedTrain) -> Alignment:
     """Find the clock of a source, and compare it with the passages at its supports."""
     moments = np.array([train.find_times(place) for place in source.supports])
+    if np.isnan(moments).all():
+        low, high = train.position.min() + UPLIFT_STRETCH_M, train.position.max() - UPLIFT_STRETCH_M
+        places = f"the train runs from x = {low:.0f} m to {high:.0f} m and passes none of its supports"
+        hint = "support_km takes kilometres of the line, support_position_m takes x"
+        return Alignment(source, source.clock, "unconfirmed", f"{places}; {hint}")
     passages = Passages(source.time, source.uplift, moments, train.speed)
     comparison, middle = passages.compare_patterns(), float(source.time.mean())
     stated, tolerance = source.clock.shift_at(middle), PULSE_LENGTH_M / train.speed + source.clock.uncertainty

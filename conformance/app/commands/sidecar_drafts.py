@@ -53,14 +53,15 @@ def draft_record_sidecar(parts: Sequence[DescribedTable], layout: TextSettings) 
         f"# speed_km_h = 250.0              # {TO_DO} nominal speed of the train",
         f"pantographs = {forces:<19} # check: pantographs with a contact force",
         f'# filter_applied_Hz = "none"      # {TO_DO} cut-off of a low-pass filter before recording, or "none"',
-        f"# evaluated_m = [0.0, 1000.0]     # {TO_DO} start and end of the analysis section, x in running direction",
+        *_list_section_lines("evaluated", f"{TO_DO} start and end of the analysis section", guesses),
     ]
     if forces > 1:
         spacing = ", ".join(["200.0"] * (forces - 1))
         lines.append(f"# spacing_m = [{spacing}]".ljust(34) + f"# {TO_DO} distances between successive pantographs")
-    lines.append("# support_position_m = []         # positions of the supports with an uplift, x in running direction")
+    lines += _list_section_lines("support", "the supports with an uplift", guesses)
     lines += _list_layout(layout)
-    lines += ["", "[line]", "# span_m = 65.0                   # longest span", "# wave_speed_m_s = 120.0"]
+    lines += ["", "[line]", "# span_m = 65.0                   # longest span, needed for the uplift"]
+    lines += ["# wave_speed_m_s = 120.0          # sqrt(tension / mass per length) of the contact wire"]
     lines += ["# uplift_space_mm = 120.0         # space for the uplift at the supports"]
     lines += ["", "[system]", 'name = "measurement"              # name of the measuring system']
     if not own:
@@ -72,6 +73,23 @@ def draft_record_sidecar(parts: Sequence[DescribedTable], layout: TextSettings) 
         lines += _list_source_lines(part, parts[0], uplifts, layout)
         uplifts += len(guess_channels(part.facts).get("uplift", []))
     return "\n".join(lines) + "\n"
+
+
+def _list_section_lines(key: str, text: str, guesses: dict[str, list[ChannelFacts]]) -> Iterator[str]:
+    """Commented line of the analysis section or the supports, in the kilometres of the file if it has them."""
+    fact = _find_kilometres(guesses)
+    if fact is not None:
+        ends = sorted((fact.smallest, fact.largest), reverse=fact.trend < 0)
+        values = ", ".join(f"{end:.3f}" for end in ends) if key == "evaluated" else ""
+        yield f"# {key}_km = [{values}]".ljust(34) + f"# {text}, kilometres of the line"
+    else:
+        name, values = ("evaluated_m", "0.0, 1000.0") if key == "evaluated" else ("support_position_m", "")
+        yield f"# {name} = [{values}]".ljust(34) + f"# {text}, x in running direction"
+
+
+def _find_kilometres(guesses: dict[str, list[ChannelFacts]]) -> ChannelFacts | None:
+    """Channel with the kilometres of the line."""
+    return next((fact for fact in guesses.get("position", []) if fact.unit == "km"), None)
 
 
 def _list_source_lines(part: DescribedTable, first: DescribedTable, uplifts: int, layout: TextSettings) -> list[str]:
@@ -130,7 +148,7 @@ def _list_column_lines(
         for number, fact in enumerate(found, 1 + uplifts if several else 1):
             used.add(id(fact))
             name = CHANNELS[channel].column(number)
-            remark = f"   # {TO_DO} support_position_m above" if several else ""
+            remark = f"   # {TO_DO} with the supports above" if several else ""
             yield f"{'# ' if several else ''}{_column_line(name, fact, None)}{remark}"
     if len(guesses.get("force", [])) > 1:
         yield "# forces of one pantograph (left and right): one [columns.force_1_N] with sum = [...], see"
@@ -160,14 +178,18 @@ def _column_line(name: str, fact: ChannelFacts, unit: str | None) -> str:
 
 def _list_position_help(guesses: dict[str, list[ChannelFacts]]) -> Iterator[str]:
     """Commented tables for the position."""
-    kilometres = [fact for fact in guesses.get("position", []) if fact.unit == "km"]
-    if kilometres:
-        direction = "decreasing" if kilometres[0].trend < 0 else "increasing"
+    kilometres = _find_kilometres(guesses)
+    if kilometres is not None:
+        known = kilometres.trend != 0
+        mark, remark = ("", "check") if known else ("# ", TO_DO)
+        zero, direction = (
+            (kilometres.smallest, "increasing") if kilometres.trend >= 0 else (kilometres.largest, "decreasing")
+        )
         yield from (
             "",
-            f"# [track]                        # {TO_DO} the position is a kilometre of the line, which x counts from",
-            "# zero_km = 0.0                  # x = 0",
-            f'# kilometres = "{direction}"      # in running direction, as in the file',
+            f"{mark}[track]".ljust(34) + f"# {remark} the position is a kilometre of the line",
+            f"{mark}zero_km = {zero:.3f}".ljust(34) + "# x = 0, any kilometre",
+            f'{mark}kilometres = "{direction}"'.ljust(34) + "# in running direction, as in the file",
         )
     elif "position" not in guesses:
         yield from (

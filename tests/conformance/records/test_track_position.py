@@ -13,8 +13,10 @@ from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.csv_table import write_csv_table
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.records.track_position import (
     PulsesUnusable,
@@ -143,6 +145,20 @@ def test_both_directions_and_every_source_give_the_same_places(source: str, kilo
         assert assessed.values.values[number]["std_force_N"] == pytest.approx(20 / np.sqrt(2), abs=0.05)
 
 
+def test_section_and_supports_by_kilometres_are_those_by_positions(tmp_path: Path) -> None:
+    """From 120.2 down to 119.6 km with x = 0 at 120.5 km: x from 300 m to 900 m, in whichever order."""
+    track = {"zero_km": ZERO_KM, "kilometres": "decreasing"}
+    columns = {**COLUMNS, "position_1_m": {"column": "km", "unit": "km"}}
+    kilometres = {"evaluated_km": [119.6, 120.2], "support_km": [120.2, 119.9]}
+    content = {"columns": columns, "track": track, **kilometres}
+    sidecar = write_logger_file(tmp_path, "decreasing", content)
+    edit_toml(sidecar, {"evaluated_m": None})
+    read = read_model(sidecar, RecordSidecar, "sidecar")
+    assert (read.evaluated_m, read.support_position_m) == ((300.0, 900.0), (300.0, 600.0))
+    stored = read.model_dump(by_alias=True, exclude_none=True, exclude_defaults=True)
+    assert RecordSidecar.model_validate(stored, strict=False) == read
+
+
 PULSES = {"kind": "counter", "column": "v", "metres_per_pulse": 1.0, "start_m": 0.0}
 
 
@@ -162,6 +178,9 @@ PULSES = {"kind": "counter", "column": "v", "metres_per_pulse": 1.0, "start_m": 
         ({"position": PULSES | {"column": "x"}}, "no column 'x'"),
         ({"position": PULSES, "track": None}, None),
         ({"position": PULSES | {"kind": "pulses"}, "track": None}, "has 1 rising edges"),
+        ({"evaluated_km": [119.6, 120.2]}, "key evaluated_km: evaluated_m gives the same"),
+        ({"position": PULSES, "track": None, "support_km": [120.2]}, "key support_km: the table track is missing"),
+        ({"support_position_m": [86.85, 86.8]}, "two supports are less than 0.5 m apart"),
     ],
 )
 def test_wrong_positions_name_their_key(change: dict[str, Any], message: str | None, tmp_path: Path) -> None:

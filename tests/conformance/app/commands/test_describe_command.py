@@ -44,11 +44,11 @@ def complete(sidecar: Path, values: dict[str, str]) -> None:
     for key, value in values.items():
         text, count = re.subn(rf"(?m)^# {re.escape(key)} = [^#\n]*", f"{key} = {value} ", text)
         assert count == 1, key
-    sidecar.write_text(text.replace("# [track]", "[track]"), encoding="utf-8")
+    sidecar.write_text(text, encoding="utf-8")
 
 
 def test_facts_and_sidecar_of_a_logger_file(logger: Path) -> None:
-    """Four keys and the kilometres are completed; the statistics are those of the sine: 120 N and 30/sqrt(2) N."""
+    """Four keys are completed, the track is known; the statistics are those of the sine: 120 N, 30/sqrt(2) N."""
     sidecar = logger.with_suffix(".toml")
     result = describe(logger, "--sidecar", sidecar)
     assert result.exit_code == 0
@@ -58,8 +58,8 @@ def test_facts_and_sidecar_of_a_logger_file(logger: Path) -> None:
     assert "constant" in result.output
     (unused,) = [line for line in sidecar.read_text("utf-8").splitlines() if line.startswith("# not used")]
     assert ("Temperatur" in unused, "Kraft" in unused) == (True, False)
-    decided = {"speed_km_h": "252.0", "filter_applied_Hz": '"none"', "evaluated_m": "[300.0, 1380.0]"}
-    complete(sidecar, {**decided, "spacing_m": "[200.0]", "zero_km": "87.25", "kilometres": '"decreasing"'})
+    decided = {"speed_km_h": "252.0", "filter_applied_Hz": '"none"', "evaluated_km": "[86.95, 85.87]"}
+    complete(sidecar, {**decided, "spacing_m": "[200.0]"})
     assessed = load_assessed_record(sidecar, load_profile("acceptance-ac"), LineTable())
     for number in (1, 2):
         values = assessed.values.values[number]
