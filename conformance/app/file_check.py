@@ -19,6 +19,7 @@ from pantocheck.conformance.core.json_file import read_json, validate_json
 from pantocheck.conformance.core.measured_table import CSV, TABLE_SUFFIXES
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.toml_file import read_model, read_toml
+from pantocheck.conformance.core.workbook_reading import WORKBOOK_SUFFIXES
 from pantocheck.conformance.line.library_folder import library_folder
 
 
@@ -171,10 +172,13 @@ def _is_skipped(folder: Path) -> bool:
 
 def _is_input(path: Path) -> bool:
     suffix = path.suffix.lower()
-    if suffix in CSV.suffixes:
-        from pantocheck.conformance.line.support_rows import read_line_table
+    if suffix in (*CSV.suffixes, *WORKBOOK_SUFFIXES):
+        from pantocheck.conformance.line.support_rows import read_line_tables
 
-        return not path.with_suffix(".toml").is_file() and read_line_table(path) is not None
+        try:
+            return not path.with_suffix(".toml").is_file() and bool(read_line_tables(path))
+        except InputError:
+            return True
     if suffix != ".toml":
         return False
     try:

@@ -3,14 +3,15 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from pantocheck.conformance.comparison.static_record import STATIC_SCHEMA, read_static_table
+from pantocheck.conformance.comparison.static_record import STATIC_SCHEMA, StaticSidecar, read_static_table
 from pantocheck.conformance.core.measured_table import CSV, TABLE_SUFFIXES
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.toml_file import read_model, read_toml
+from pantocheck.conformance.core.workbook_reading import WORKBOOK_SUFFIXES
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.grading.assessed_record import find_missing_statement
-from pantocheck.conformance.line.support_rows import check_line_table, read_line_table
+from pantocheck.conformance.line.support_rows import check_line_table, read_line_tables
 from pantocheck.conformance.pantograph.response_record import RESPONSE_SCHEMA, ResponseSidecar, read_response
 from pantocheck.conformance.records.column_values import list_sensor_warnings
 from pantocheck.conformance.records.record import RecordInvalid
@@ -78,6 +79,9 @@ def _check_drops(path: Path) -> str:
 
 
 def _check_static(path: Path) -> str:
+    sidecar = read_model(path.with_suffix(".toml"), StaticSidecar, "sidecar")
+    if not path.with_name(sidecar.file).exists():
+        return "static sidecar; its table is not beside it"
     record = read_static_table(path)
     return f"static record: {record.position.size} positions with {' and '.join(record.values)} in {record.source}"
 
@@ -100,8 +104,9 @@ def check_table(path: Path) -> str:
         return _check_static(sidecar)
     if schema == RESPONSE_SCHEMA:
         return _check_response(sidecar)
-    if not sidecar.is_file() and path.suffix.lower() in CSV.suffixes and (table := read_line_table(path)) is not None:
-        return check_line_table(table)
+    may_be_line = not sidecar.is_file() and path.suffix.lower() in (*CSV.suffixes, *WORKBOOK_SUFFIXES)
+    if may_be_line and (tables := read_line_tables(path)):
+        return "; ".join(map(check_line_table, tables))
     return _check_record(sidecar) if schema in RECORD_SCHEMAS else _check_drops(path)
 
 

@@ -23,6 +23,7 @@ EXTRA_OF_PACKAGE = {
     "dask_jobqueue": "cluster",
     "pyarrow": "parquet",
     "fmpy": "fmi",
+    "openpyxl": "sheets",
 }
 """Extra of `pyproject.toml` that installs a package, by its name in an import."""
 

@@ -256,6 +256,8 @@ CSV = TableFormat("csv_table", (".csv", ".txt", ".asc", ".dat"))
 MDF = TableFormat("mdf_table", (".mf4", ".mdf"), library="asammdf")
 UFF = TableFormat("uff_table", (".uff", ".unv", ".uf", ".uff58", ".58"), library="pyuff")
 HDF5 = TableFormat("hdf5_table", (".h5", ".hdf5"), library="h5py")
+XLSX = TableFormat("sheet_table", (".xlsx",), library="openpyxl")
+ODS = TableFormat("sheet_table", (".ods",))
 
 TABLE_FORMATS = (
     CSV,
@@ -265,6 +267,8 @@ TABLE_FORMATS = (
     TableFormat("tdms_table", (".tdms",), library="nptdms"),
     MDF,
     TableFormat("parquet_table", (".parquet",), library="pyarrow"),
+    XLSX,
+    ODS,
 )
 
 TABLE_SUFFIXES = tuple(suffix for table_format in TABLE_FORMATS for suffix in table_format.suffixes)

@@ -11,7 +11,7 @@ from pydantic import Field
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
 from pantocheck.conformance.core.files import MAX_FILE_BYTES, check_file, file_digest
 from pantocheck.conformance.core.input_error import InputError, suggest_names
-from pantocheck.conformance.core.measured_table import CSV, HDF5, MeasuredTable, TableFormat, read_tables
+from pantocheck.conformance.core.measured_table import CSV, HDF5, ODS, XLSX, MeasuredTable, TableFormat, read_tables
 from pantocheck.conformance.core.sourced_table import InputTable, Problems, cross_check, validation_problem
 from pantocheck.conformance.core.text_settings import TextSettings
 from pantocheck.conformance.core.toml_file import read_model
@@ -152,7 +152,7 @@ def read_named_columns(
     known: Sequence[str],
     usual: Sequence[str],
     largest: int,
-    formats: tuple[TableFormat, ...] = (CSV, HDF5),
+    formats: tuple[TableFormat, ...] = (CSV, HDF5, XLSX, ODS),
 ) -> dict[str, NamedColumn]:
     """Read the columns of a table with one run.
 

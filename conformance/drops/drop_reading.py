@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import replace
+from decimal import Decimal
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -9,12 +10,15 @@ from typing import Any
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn, parse_direction, read_tables
-from pantocheck.conformance.core.table_sidecar import read_sidecar
+from pantocheck.conformance.core.spreadsheet import read_spreadsheet
+from pantocheck.conformance.core.table_sidecar import locate_table, read_sidecar
+from pantocheck.conformance.core.toml_file import validate_model
 from pantocheck.conformance.core.units import MotionQuantity, convert_unit
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord, find_sampling_rate
-from pantocheck.conformance.drops.drop_sidecar import DropSidecar, describe_columns
+from pantocheck.conformance.drops.drop_sidecar import DropChannelTable, DropSidecar, describe_columns
+from pantocheck.conformance.line.line_columns import read_typed_rows
 from pantocheck.conformance.records.force_checks import find_clipping
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 
@@ -31,11 +35,33 @@ def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
     Raises:
         InputError: The file cannot be read, is damaged, or does not describe its channels.
     """
-    sidecar, table = read_sidecar(path, DropSidecar) if path.with_suffix(".toml").is_file() else (None, path)
+    sidecar, table = _read_drop_sidecar(path) if path.with_suffix(".toml").is_file() else (None, path)
     names, layout = (sidecar.channel_names, sidecar.table) if sidecar else ((), None)
     tables = read_tables(table, names, LARGEST_DROP, layout=layout)
     file = str(table.resolve())
     return tuple(replace(assemble_drop_record(run.separate_time(), sidecar), file=file) for run in tables)
+
+
+SENSOR_SHEET = "sensors"
+"""Name of the table of channels in a workbook with several sheets."""
+
+
+def _read_drop_sidecar(path: Path) -> tuple[DropSidecar, Path]:
+    """Sidecar with its channels, those of `channel_file` included, and the table of the record."""
+    sidecar, table = read_sidecar(path, DropSidecar)
+    if sidecar.channel_file is None:
+        return sidecar, table
+    sheet = read_spreadsheet(locate_table(path.with_suffix(".toml"), sidecar.channel_file, None), SENSOR_SHEET)
+    problems, channels = list[InputError](), list[DropChannelTable]()
+    for row in read_typed_rows(sheet, tuple(DropChannelTable.model_fields), problems):
+        tree = {key: float(value) if isinstance(value, Decimal) else value for key, value in row.values.items()}
+        try:
+            channels.append(validate_model(tree, DropChannelTable, row.place))
+        except InputError as error:
+            problems += error.problems
+    if problems:
+        raise join_errors(problems)
+    return sidecar.model_copy(update={"channel": tuple(channels)}), table
 
 
 # Mass-drop record from a measured table and its sidecar: contradictions are refused, signals are converted to SI.

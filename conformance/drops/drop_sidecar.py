@@ -6,8 +6,8 @@ from pydantic import Field
 
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn
-from pantocheck.conformance.core.sourced_table import InputTable, Positive
-from pantocheck.conformance.core.table_sidecar import TableSidecar
+from pantocheck.conformance.core.sourced_table import InputTable, Positive, Problems, cross_check, validation_problem
+from pantocheck.conformance.core.table_sidecar import TableName, TableSidecar, find_table_name_problems
 from pantocheck.conformance.core.units import MotionQuantity, convert_unit
 
 
@@ -89,8 +89,18 @@ class DropSidecar(TableSidecar):
     test: DropTestTable = DropTestTable()
     drop: DropTable = DropTable()
     record: DropRecordTable
-    channel: Annotated[tuple[DropChannelTable, ...], Field(strict=False, min_length=1)]
+    channel: Annotated[tuple[DropChannelTable, ...], Field(strict=False)] = ()
     """Channels, one per column."""
+    channel_file: TableName | None = None
+    """Name of a table beside the sidecar with the same keys as columns, in place of [[channel]]: CSV, XLSX or ODS."""
+
+    @cross_check
+    def _check_channels(self) -> Problems:
+        if bool(self.channel) == (self.channel_file is not None):
+            found = "missing" if not self.channel else "given beside channel_file"
+            yield validation_problem("channel", found, "Give one [[channel]] per column, or channel_file.")
+        if self.channel_file is not None:
+            yield from find_table_name_problems(self.channel_file)
 
     @property
     def channel_names(self) -> tuple[str, ...]:

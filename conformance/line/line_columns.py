@@ -7,6 +7,7 @@ from decimal import Decimal
 
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.spreadsheet import Spreadsheet
+from pantocheck.conformance.core.text_reading import is_thousands
 from pantocheck.conformance.core.units import convert_key, find_unit, suggest_key
 from pantocheck.conformance.line.elements.dropper_schedule import DropperSchedule
 from pantocheck.conformance.line.support_table import LIMIT_VALUES, SUPPORT_CHANGES
@@ -28,9 +29,12 @@ DROPPER_KEYS = tuple(DropperSchedule.model_fields)
 DROPPER_COLUMNS = ("span", *DROPPER_KEYS)
 """Columns of the table of droppers."""
 
+SUPPORT_SHEET, DROPPER_SHEET = "supports", "droppers"
+"""Names of the tables in a workbook with several sheets."""
+
 
 # Typed rows of a table: known columns, numbers in the units of the line file, whole numbers and words.
-WHOLE_NUMBERS = frozenset({"number", "span"})
+WHOLE_NUMBERS = frozenset({"number", "span", "column", "sensor"})
 """Columns of whole numbers; a column with a unit holds numbers, any other words."""
 
 LONGEST_NUMBER = 40
@@ -89,7 +93,8 @@ def read_typed_rows(table: Spreadsheet, known: Sequence[str], problems: list[Inp
         values: dict[str, CellValue] = {}
         for index, (name, factor) in columns.items():
             try:
-                value = _read_cell(name, row.cells[index], factor, table.delimiter)
+                is_text = not table.delimiter and index not in row.numbers
+                value = _read_cell(name, row.cells[index], factor, table.delimiter == ",", is_text)
             except ValueError as error:
                 problems.append(InputError(table.locate(row, index), f"found {row.cells[index][:40]!r}", str(error)))
                 continue
@@ -100,8 +105,16 @@ def read_typed_rows(table: Spreadsheet, known: Sequence[str], problems: list[Inp
     return rows
 
 
-def _read_cell(name: str, text: str, factor: float, delimiter: str) -> CellValue | None:
-    """Value of a cell; None if it is empty. A ValueError has the hint for the user."""
+def _read_cell(name: str, text: str, factor: float, only_points: bool, in_workbook: bool) -> CellValue | None:
+    """Value of a cell; None if it is empty. A ValueError has the hint for the user.
+
+    Args:
+        name: Column.
+        text: Content of the cell.
+        factor: Factor of the unit.
+        only_points: Whether commas separate the columns.
+        in_workbook: Whether a workbook stores the cell as text, beside numbers whose decimal mark is certain.
+    """
     if not text:
         return None
     if name in WHOLE_NUMBERS:
@@ -110,7 +123,9 @@ def _read_cell(name: str, text: str, factor: float, delimiter: str) -> CellValue
         return int(text)
     if find_unit(name) is None:
         return text
-    if len(text) > LONGEST_NUMBER or not _NUMBER.fullmatch(text) or (delimiter == "," and "," in text):
+    if in_workbook and is_thousands(text):
+        raise ValueError("Its mark may separate decimals or thousands: format the cell as a number.")
+    if len(text) > LONGEST_NUMBER or not _NUMBER.fullmatch(text) or (only_points and "," in text):
         raise ValueError("Write a number such as 1.5, or 1,5 in a table with semicolons; leave out thousands marks.")
     return Decimal(text.replace(",", ".")) * Decimal(repr(factor))
 
@@ -118,10 +133,8 @@ def _read_cell(name: str, text: str, factor: float, delimiter: str) -> CellValue
 def _find_mixed_decimals(table: Spreadsheet, columns: dict[int, tuple[str, float]]) -> Iterator[InputError]:
     """Decimal points beside decimal commas: one of them could be a thousands mark."""
     numbers = [index for index, (name, _) in columns.items() if find_unit(name) is not None]
-    places = {
-        mark: next(((row, index) for row in table.rows for index in numbers if mark in row.cells[index]), None)
-        for mark in ".,"
-    }
+    texts = [(row, i) for row in table.rows for i in numbers if i not in row.numbers]
+    places = {mark: next(((row, i) for row, i in texts if mark in row.cells[i]), None) for mark in ".,"}
     point, comma = places["."], places[","]
     if table.delimiter != "," and point is not None and comma is not None:
         yield InputError(

@@ -8,6 +8,7 @@ from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.sourced_table import PROVENANCE
 from pantocheck.conformance.core.spreadsheet import Spreadsheet, read_spreadsheet
 from pantocheck.conformance.core.toml_file import read_toml, validate_model
+from pantocheck.conformance.core.workbook_reading import WORKBOOK_SUFFIXES, list_sheet_names
 from pantocheck.conformance.line.dropper_rows import (
     LengthMeaning,
     SpanRows,
@@ -21,8 +22,10 @@ from pantocheck.conformance.line.dropper_rows import (
 from pantocheck.conformance.line.geometry import ListedSpans
 from pantocheck.conformance.line.line_columns import (
     DROPPER_COLUMNS,
+    DROPPER_SHEET,
     SUPPORT_COLUMNS,
     SUPPORT_KEYS,
+    SUPPORT_SHEET,
     TypedRow,
     read_typed_rows,
 )
@@ -44,8 +47,9 @@ def import_line(
     Args:
         base: Line file with the wires, droppers, steady arm, messenger support and damping, and the values of empty
             cells.
-        supports: Table of the supports and both ends of the line.
-        droppers: Table of the droppers; None: every span has those of the table [droppers] of the base file.
+        supports: Table of the supports and both ends of the line, or a workbook.
+        droppers: Table of the droppers; None: the sheet `droppers` of the workbook or, without it, every span has those
+            of the table [droppers] of the base file.
         lengths: Meaning of the lengths of the droppers: published lengths do not change the line; unloaded lengths
             determine the heights of the contact wire.
 
@@ -59,8 +63,11 @@ def import_line(
     problems: list[InputError] = []
     tree = _try(problems, lambda: read_toml(base, "line")) or {}
     base_line = _try(problems, lambda: validate_model(tree, LineFile, f"line '{base.name}'")) if tree else None
-    support_table = _try(problems, lambda: read_spreadsheet(supports))
-    dropper_table = None if droppers is None else _try(problems, lambda: read_spreadsheet(droppers))
+    if droppers is None and supports.suffix.lower() in WORKBOOK_SUFFIXES:
+        names = _try(problems, lambda: list_sheet_names(supports, f"table '{supports.name}'")) or []
+        droppers = supports if DROPPER_SHEET in (name.strip().lower() for name in names) else None
+    support_table = _try(problems, lambda: read_spreadsheet(supports, SUPPORT_SHEET))
+    dropper_table = None if droppers is None else _try(problems, lambda: read_spreadsheet(droppers, DROPPER_SHEET))
     if base_line is None or support_table is None or (droppers is not None and dropper_table is None):
         raise join_errors(problems)
     rows = read_typed_rows(support_table, SUPPORT_COLUMNS, problems)
@@ -68,7 +75,7 @@ def import_line(
     span_lengths = read_span_lengths(rows, support_table.where, problems)
     groups = {} if dropper_table is None else _read_droppers(dropper_table, len(span_lengths), problems)
     problems += [*find_droppers_outside(groups, span_lengths), *find_height_problems(groups, lengths)]
-    names = [path.name for path in (supports, droppers) if path is not None]
+    names = list(dict.fromkeys(path.name for path in (supports, droppers) if path is not None))
     geometry = {key: value for key, value in tree["geometry"].items() if key not in REPLACED}
     geometry["source"] = f"{' and '.join(names)}, other values from {base.name}"[:500]
     spans: list[dict[str, Any]] = [{} if length is None else {"length_m": length} for length in span_lengths]

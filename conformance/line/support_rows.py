@@ -8,12 +8,15 @@ from typing import Any
 from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.spreadsheet import Spreadsheet, read_spreadsheet
 from pantocheck.conformance.core.units import convert_key
+from pantocheck.conformance.core.workbook_reading import WORKBOOK_SUFFIXES, list_sheet_names
 from pantocheck.conformance.line.line_columns import (
     DROPPER_COLUMNS,
+    DROPPER_SHEET,
     POSITION,
     SPAN_LENGTH,
     SUPPORT_COLUMNS,
     SUPPORT_KEYS,
+    SUPPORT_SHEET,
     TypedRow,
     read_typed_rows,
 )
@@ -144,18 +147,35 @@ FEWEST_COLUMNS = 2
 """Fewest known columns by which a table is recognised."""
 
 
-def read_line_table(path: Path) -> Spreadsheet | None:
-    """Read a table of supports or droppers; None for any other file.
+def read_line_tables(path: Path) -> list[Spreadsheet]:
+    """Read tables of supports or droppers: a text, or the sheets of a workbook; none for any other file.
 
-    A table is recognised by its columns: at least `FEWEST_COLUMNS`, and at least half of them, are known.
+    A table is recognised by its columns: at least `FEWEST_COLUMNS`, and at least half of them, are known. Sheets that
+    are named `supports` or `droppers` are recognised, too.
+
+    Raises:
+        InputError: A sheet of this name cannot be read.
     """
-    try:
-        table = read_spreadsheet(path)
-    except InputError:
-        return None
-    headings = table.head.cells
-    known = sum(convert_key(heading, [*SUPPORT_COLUMNS, *DROPPER_COLUMNS]) is not None for heading in headings)
-    return table if known >= FEWEST_COLUMNS and 2 * known >= len(headings) else None
+    names: list[str | None] = [None]
+    if path.suffix.lower() in WORKBOOK_SUFFIXES:
+        try:
+            found = {name.strip().lower() for name in list_sheet_names(path, f"table '{path.name}'")}
+        except InputError:
+            return []
+        names = [name for name in (SUPPORT_SHEET, DROPPER_SHEET) if name in found] or names
+    tables = []
+    for name in names:
+        try:
+            table = read_spreadsheet(path, name)
+        except InputError:
+            if name is not None:
+                raise
+            continue
+        headings = table.head.cells
+        known = sum(convert_key(heading, [*SUPPORT_COLUMNS, *DROPPER_COLUMNS]) is not None for heading in headings)
+        if name is not None or (known >= FEWEST_COLUMNS and 2 * known >= len(headings)):
+            tables.append(table)
+    return tables
 
 
 def check_line_table(table: Spreadsheet) -> str:

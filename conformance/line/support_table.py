@@ -61,14 +61,14 @@ LIMIT_VALUES = {
 """Values of every support and end of the line, by key."""
 
 
-def _list_changes() -> Iterator[tuple[str, type[InputTable]]]:
-    """Tables of the elements that a support may change, and the models of their changes."""
+def _list_changed_tables() -> Iterator[tuple[str, type[SourcedTable]]]:
+    """Tables of the elements that a support may change, by their keys."""
     for element in ELEMENTS:
         for key in element.support_tables:
             table, _ = find_model(element.model_fields[key].annotation, set())
             if table is None or not issubclass(table, SourcedTable):
                 raise TypeError(f"{element.__name__}: {key} is not a table of the line file")
-            yield key, _create_changes(table, key)
+            yield key, table
 
 
 def _create_changes(table: type[SourcedTable], key: str) -> type[InputTable]:
@@ -92,7 +92,10 @@ def _create_changes(table: type[SourcedTable], key: str) -> type[InputTable]:
     return create_model(name, __base__=InputTable, __doc__=title, **fields)
 
 
-SUPPORT_CHANGES = dict(_list_changes())
+CHANGED_TABLES = dict(_list_changed_tables())
+"""Tables of the line that a support may change, by their keys."""
+
+SUPPORT_CHANGES = {key: _create_changes(table, key) for key, table in CHANGED_TABLES.items()}
 """Models of the changes at one support, by the key of the table of the line."""
 
 _CHANGES: dict[str, Any] = {

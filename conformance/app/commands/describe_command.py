@@ -36,7 +36,7 @@ def describe_command(
     files: Annotated[
         list[Path],
         typer.Argument(
-            metavar="FILE ...", help="Files of a measurement: CSV, HDF5, MATLAB, UFF, TDMS, MDF or Parquet."
+            metavar="FILE ...", help="Files of a measurement: CSV, HDF5, MATLAB, UFF, TDMS, MDF, Parquet, XLSX or ODS."
         ),
     ],
     sidecar: Annotated[

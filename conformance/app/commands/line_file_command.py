@@ -21,12 +21,13 @@ from pantocheck.conformance.core.files import check_writable, write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import read_model, read_toml
+from pantocheck.conformance.execution.plan import split_names
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.dropper_rows import LengthMeaning
 from pantocheck.conformance.line.elements.element import KINDS, DrawnMark
 from pantocheck.conformance.line.elements.point_mass import PointMasses
 from pantocheck.conformance.line.line_drawing import LineDrawing, draw_line_pdf, draw_line_svg, list_labelled_marks
-from pantocheck.conformance.line.line_export import DecimalMark, export_droppers, export_supports
+from pantocheck.conformance.line.line_export import DecimalMark, export_droppers, export_supports, export_workbook
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.line_import import import_line
 from pantocheck.conformance.runs.line_fmu import FmiVersion, build_line_fmu
@@ -36,14 +37,18 @@ from pantocheck.model.dynamics.line_image import GivenInput
 
 def line_import_command(
     supports: Annotated[
-        Path, typer.Argument(help=f"CSV table of the supports and both ends: {DocumentationPage.LINE_TABLES}.")
+        Path,
+        typer.Argument(
+            help=f"Table of the supports and both ends, or workbook (XLSX, ODS): {DocumentationPage.LINE_TABLES}."
+        ),
     ],
     base: Annotated[
         Path, typer.Option(help="Line file with the wires, arms and damping, and the values of empty cells.")
     ],
     out: Annotated[Path, typer.Option(help="Line file to write.")],
     droppers: Annotated[
-        Path | None, typer.Option(help="CSV table of the droppers. Default: those of [droppers] in the base file.")
+        Path | None,
+        typer.Option(help="Table of the droppers. Default: the sheet of the workbook, or the base."),
     ] = None,
     dropper_lengths: Annotated[
         LengthMeaning,
@@ -77,12 +82,19 @@ def line_import_command(
     return CommandOutput(escape_text(f"{facts['spans']} spans, {facts['length_m']:g} m"), facts, files=(out,))
 
 
+TABLE_FILES = {"csv": ("supports.csv", "droppers.csv"), "xlsx": ("line.xlsx",)}
+"""Files of the tables of a line by their format."""
+
+
 # `pantocheck line export`: tables of the supports and droppers of a line, or the line as FMU.
 def line_export_command(
     line: Annotated[
         str, typer.Argument(help="Id of a case, or path of a case or line file.", autocompletion=complete_case)
     ],
-    out: Annotated[Path | None, typer.Option(help="Folder for supports.csv and droppers.csv.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder of the tables.")] = None,
+    formats: Annotated[
+        str, typer.Option(help="csv: supports.csv and droppers.csv; xlsx: line.xlsx with both as sheets to fill in.")
+    ] = "csv",
     decimal: Annotated[
         DecimalMark, typer.Option(help="Decimal mark; beside commas, columns are separated by semicolons.")
     ] = "point",
@@ -103,16 +115,26 @@ def line_export_command(
 
     pantocheck line export en50318-2018/ac-simple/static --out tables --decimal comma
 
+    pantocheck line export en50318-2018/ac-simple/static --out tables --formats xlsx
+
     pantocheck line export en50318-2018/ac-simple/275 --fmu line.fmu
     """
     if out is None and fmu is None:
         raise InputError("line export", "has no file to write", "Give --out, --fmu or both.")
     line_file, files = read_line(line), list[Path]()
     if out is not None:
+        chosen = split_names(formats)
+        if unknown := [name for name in chosen if name not in TABLE_FILES]:
+            raise InputError(f"format '{unknown[0]}'", "there is no such format", "Give csv, xlsx or csv,xlsx.")
+        # Spreadsheets recognise UTF-8 by the byte order mark.
+        contents = {
+            "supports.csv": lambda: export_supports(line_file, decimal).encode("utf-8-sig"),
+            "droppers.csv": lambda: export_droppers(line_file, decimal).encode("utf-8-sig"),
+            "line.xlsx": lambda: export_workbook(line_file),
+        }
         check_writable(out)
-        for path, export in ((out / "supports.csv", export_supports), (out / "droppers.csv", export_droppers)):
-            # Spreadsheets recognise UTF-8 by the byte order mark.
-            write_atomically(path, export(line_file, decimal).encode("utf-8-sig"))
+        for path in (out / name for kind in chosen for name in TABLE_FILES[kind]):
+            write_atomically(path, contents[path.name]())
             files.append(path)
     if fmu is not None:
         check_writable(fmu.parent)

@@ -1,8 +1,10 @@
-"""`pantocheck new`: commented input files to start from."""
+"""`pantocheck new`: commented input files and sheets to start from."""
 
 import json
 import re
+import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Literal, get_args
@@ -11,12 +13,22 @@ import typer
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
+from pantocheck.conformance.core.extras import require_package
 from pantocheck.conformance.core.input_error import InputError, suggest_names
+from pantocheck.conformance.core.toml_file import validate_model
+from pantocheck.conformance.core.workbook_writing import SheetColumn, WrittenSheet, describe_column, write_workbook
+from pantocheck.conformance.drops.drop_sidecar import DropChannelTable
+from pantocheck.conformance.line.line_export import export_workbook
+from pantocheck.conformance.line.line_file import LineFile
 
-NewKind = Literal["line", "case", "pantograph", "response", "administration", "dossier"]
+NewKind = Literal["line", "case", "pantograph", "response", "static", "administration", "dossier"]
 """Kinds of input files with a template."""
 
+SheetKind = Literal["line", "static", "sensors"]
+"""Kinds of sheets to fill in."""
+
 NEW_KINDS: tuple[NewKind, ...] = get_args(NewKind)
+SHEET_KINDS: tuple[SheetKind, ...] = get_args(SheetKind)
 
 LIBRARY_PARTS = {"line": "en50318-2002/line.toml", "pantograph": "en50318-2002/pantograph.toml"}
 """Files of the library to which a new case refers if there are none beside it."""
@@ -43,15 +55,35 @@ def fill_case_template(path: Path, parts: Mapping[str, str]) -> str:
     return text
 
 
-def write_new_file(path: Path, text: str) -> None:
-    """Write a TOML file that does not exist yet."""
+def build_sheets(kind: SheetKind) -> bytes:
+    """Workbook to fill in, with the values of the template as examples."""
+    if kind == "line":
+        return export_workbook(validate_model(tomllib.loads(read_template("line")), LineFile, "template"))
+    require_package("openpyxl", "format 'xlsx'")
+    if kind == "sensors":
+        columns = [describe_column(key, DropChannelTable, key) for key in DropChannelTable.model_fields]
+        words = {"direction": ("+x", "-x", "+y", "-y", "+z", "-z"), "wire": ("CW", "MW")}
+        columns = [replace(column, words=words.get(column.name, ())) for column in columns]
+        rows: list[list[str | float]] = [[n, f"S{n}_z", n, "CW", 31.5 * n, "+z", "m/s2"] for n in (1, 2)]
+    else:
+        columns = [
+            SheetColumn("position_m", "position, as the table counts [m]", rule="a number"),
+            SheetColumn("contact_wire_height_m", "height of the contact wire at rest [m]", rule="a number"),
+            SheetColumn("elasticity_mm_N", "uplift over static force [mm/N]", rule="a positive number", bounds=(">0",)),
+        ]
+        rows = [[1001.5, 5.2986, 0.0609], [1007.5, 5.2965, 0.2235], [1013.5, 5.2969, 0.3365]]
+    return write_workbook([WrittenSheet(kind, tuple(columns), rows, is_filled_in=True)])
+
+
+def write_new_file(path: Path, content: str | bytes, suffix: str = ".toml") -> None:
+    """Write a file that does not exist yet."""
     where = f"file '{path}'"
-    if path.suffix != ".toml":
-        raise InputError(where, f"has the suffix {path.suffix!r}", "Give a name that ends in .toml .")
+    if path.suffix != suffix:
+        raise InputError(where, f"has the suffix {path.suffix!r}", f"Give a name that ends in {suffix} .")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
+        with path.open("xb") as file:
+            file.write(content.encode() if isinstance(content, str) else content)
     except FileExistsError:
         raise InputError(where, "exists already", "Give another name. No file is overwritten.") from None
     except OSError as error:
@@ -59,8 +91,12 @@ def write_new_file(path: Path, text: str) -> None:
 
 
 def new_command(
-    kind: Annotated[str, typer.Argument(help=f"Kind of the file: {', '.join(NEW_KINDS)}.")],
-    file: Annotated[Path | None, typer.Argument(help="File to write.", show_default="KIND.toml")] = None,
+    kind: Annotated[
+        str, typer.Argument(help=f"Kind of the file: {', '.join(NEW_KINDS)}; of a sheet: {', '.join(SHEET_KINDS)}.")
+    ],
+    file: Annotated[
+        Path | None, typer.Argument(help="File to write: .toml, or .xlsx for a sheet.", show_default="KIND.toml")
+    ] = None,
     line: Annotated[
         str | None,
         typer.Option(help="Line of a new case.", show_default="line.toml beside the case, or one of the library"),
@@ -72,14 +108,19 @@ def new_command(
         ),
     ] = None,
 ) -> CommandOutput:
-    """Write a commented, valid input file to start from.
+    """Write a commented, valid input file to start from, or a sheet to fill in.
 
     Examples:
 
     pantocheck new line my-line.toml
 
     pantocheck new case my-case.toml --line my-line.toml
+
+    pantocheck new static heights.xlsx
     """
+    sheet = next((known for known in SHEET_KINDS if known == kind), None)
+    if sheet is not None and file is not None and file.suffix.lower() == ".xlsx":
+        return _write_sheets(sheet, file)
     chosen = next((known for known in NEW_KINDS if known == kind), None)
     if chosen is None:
         raise InputError(f"kind '{kind}'", "there is no template of this kind", suggest_names(kind, NEW_KINDS))
@@ -91,5 +132,20 @@ def new_command(
         return CommandOutput(escape_text(text), {"kind": kind, **parts}, files=(path,))
     if line is not None or pantograph is not None:
         raise InputError("options --line and --pantograph", f"are given for a {kind}", "Only a case names other files.")
-    write_new_file(path, read_template(chosen))
+    write_new_file(path, _fill_template(chosen, f"{path.stem}.csv"))
     return CommandOutput(escape_text(f"new {kind}"), {"kind": kind}, files=(path,))
+
+
+def _fill_template(kind: NewKind, table: str) -> str:
+    """Template with the name of its table as a TOML string."""
+    return read_template(kind).replace("@table@", json.dumps(table)[1:-1])
+
+
+def _write_sheets(kind: SheetKind, path: Path) -> CommandOutput:
+    """Write a workbook; beside that of static values, the sidecar."""
+    content, files = build_sheets(kind), [path]
+    if kind == "static":
+        files.append(path.with_suffix(".toml"))
+        write_new_file(files[1], _fill_template("static", path.name))
+    write_new_file(path, content, ".xlsx")
+    return CommandOutput(escape_text(f"new sheets: {kind}"), {"kind": kind}, files=files)
