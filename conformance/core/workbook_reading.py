@@ -28,14 +28,17 @@ MAX_WORKBOOK_BYTES = 10_000_000
 MAX_UNPACKED_BYTES = 60_000_000
 """Largest size of all its parts without compression [bytes]: 300,000 numbers take 15 MB."""
 
-MOST_PARTS = 2000
+_MOST_PARTS = 2000
 """Largest number of its parts."""
 
-MOST_ROWS_OF_SHEET = 1_048_576
+_MOST_ROWS_OF_SHEET = 1_048_576
 """Rows of a sheet of the spreadsheet programs."""
 
-MOST_CELLS = 2_000_000
+_MOST_CELLS = 2_000_000
 """Largest number of cells up to the last one of each row, empty ones included."""
+
+_DAMAGED = (zipfile.BadZipFile, SyntaxError)
+"""Exceptions of the libraries for damaged archives and XML texts."""
 
 
 class Fault(NamedTuple):
@@ -46,9 +49,9 @@ class Fault(NamedTuple):
     hint: str = "Format the cell as a number, and write the value again."
 
 
-DATE = Fault("is a date")
-FORMULA = Fault("is a formula without a stored result", "Open the file in a spreadsheet program, and save it.")
-MERGED = Fault("is merged with others", "Separate the cells, and write the value into each.")
+_DATE = Fault("is a date")
+_FORMULA = Fault("is a formula without a stored result", "Open the file in a spreadsheet program, and save it.")
+_MERGED = Fault("is merged with others", "Separate the cells, and write the value into each.")
 
 
 class SheetCell(NamedTuple):
@@ -109,7 +112,7 @@ def read_sheet(path: Path, where: str, name: str | None = None) -> Sheet:
         raise InputError(where, f"has several sheets ({names})", hint)
     (title, read), *_ = wanted or filled
     place = f"{where}, sheet '{title[:80]}'"
-    with convert_damage_errors(place, "a workbook", ElementTree.ParseError, zipfile.BadZipFile):
+    with convert_damage_errors(place, "a workbook", *_DAMAGED):
         return Sheet(place, tuple(row for row in read(place) if any(cell != EMPTY for cell in row.cells)))
 
 
@@ -120,7 +123,7 @@ SheetReader = Callable[[str], Iterator[SheetRow]]
 def _open_workbook(path: Path, where: str) -> list[tuple[str, SheetReader]]:
     """Names and readers of the sheets, in the order of the workbook."""
     content = read_bytes(path, where, MAX_WORKBOOK_BYTES)
-    with convert_damage_errors(where, "a workbook", zipfile.BadZipFile, ElementTree.ParseError, NotImplementedError):
+    with convert_damage_errors(where, "a workbook", *_DAMAGED):
         archive = zipfile.ZipFile(io.BytesIO(content))
         _check_parts(archive, where)
         if path.suffix.lower() == ".ods":
@@ -140,9 +143,9 @@ def _check_parts(archive: zipfile.ZipFile, where: str) -> None:
     """
     parts = archive.infolist()
     size = sum(part.file_size for part in parts)
-    if size > MAX_UNPACKED_BYTES or len(parts) > MOST_PARTS:
+    if size > MAX_UNPACKED_BYTES or len(parts) > _MOST_PARTS:
         found = f"has {len(parts)} parts of {size} bytes together without compression"
-        raise InputError(where, found, f"At most {MOST_PARTS} parts and {MAX_UNPACKED_BYTES} bytes are read.")
+        raise InputError(where, found, f"At most {_MOST_PARTS} parts and {MAX_UNPACKED_BYTES} bytes are read.")
     for part in parts:
         if part.flag_bits & 1:
             raise InputError(where, "is encrypted", "Save it without a password.")
@@ -186,19 +189,24 @@ def _read_xlsx(archive: zipfile.ZipFile, content: bytes, sheet: Any, index: int,
     results: Iterator[Any] | None = None
     for number, row in _iterate_xlsx(sheet):
         cells += len(row)
-        if cells > MOST_CELLS or number > MOST_ROWS_OF_SHEET:
-            raise InputError(where, f"has more than {MOST_CELLS} cells", "Delete the empty rows and columns.")
+        if cells > _MOST_CELLS or number > _MOST_ROWS_OF_SHEET:
+            raise InputError(where, f"has more than {_MOST_CELLS} cells", "Delete the empty rows and columns.")
         if results is None and any(cell.data_type == "f" for cell in row):
             values = _load_xlsx(content, data_only=True).worksheets[index]
             results = islice(_iterate_xlsx(values), number - 1, None)
         cached = row if results is None else next(results)[1]
-        yield SheetRow(
-            number,
-            tuple(
-                SheetCell(fault=MERGED) if (number, column) in merged else _convert_xlsx(cell, result)
-                for column, (cell, result) in enumerate(zip(row, cached, strict=True), 1)
-            ),
-        )
+        found = [_convert_xlsx(cell, result) for cell, result in zip(row, cached, strict=True)]
+        yield SheetRow(number, _mark_merged(found, merged.pop(number, set())))
+    for number in sorted(merged):  # behind the last row with a content
+        yield SheetRow(number, _mark_merged([], merged[number]))
+
+
+def _mark_merged(cells: list[SheetCell], columns: set[int]) -> tuple[SheetCell, ...]:
+    """Cells of a row with the fault of those in merged ranges."""
+    cells += [EMPTY] * (max(columns, default=0) - len(cells))
+    for column in columns:
+        cells[column - 1] = SheetCell(fault=_MERGED)
+    return tuple(cells)
 
 
 def _iterate_xlsx(sheet: Any) -> Iterator[tuple[int, Any]]:
@@ -211,7 +219,7 @@ def _convert_xlsx(cell: Any, result: Any) -> SheetCell:
     value = result.value
     match value:
         case None:
-            return SheetCell(fault=FORMULA) if cell.data_type == "f" else EMPTY
+            return SheetCell(fault=_FORMULA) if cell.data_type == "f" else EMPTY
         case _ if result.data_type == "e":
             return SheetCell(fault=Fault(f"is the error {str(value)[:20]}", "Correct the formula."))
         case bool():
@@ -221,7 +229,7 @@ def _convert_xlsx(cell: Any, result: Any) -> SheetCell:
                 return SheetCell(fault=Fault("is a percentage"))
             return _convert_number(value)
         case date() | time() | timedelta():
-            return SheetCell(fault=DATE)
+            return SheetCell(fault=_DATE)
         case _:
             return _convert_text(str(value))
 
@@ -229,14 +237,17 @@ def _convert_xlsx(cell: Any, result: Any) -> SheetCell:
 _RANGE = re.compile(rb"<(?:\w+:)?mergeCell\s[^>]*?ref=[\"']([A-Z]{1,3})(\d{1,7}):([A-Z]{1,3})(\d{1,7})[\"']")
 
 
-def _find_merged(text: bytes) -> set[tuple[int, int]]:
-    """Row and column of the cells of merged ranges, without the first one, which holds the content."""
-    found = set[tuple[int, int]]()
+def _find_merged(text: bytes) -> dict[int, set[int]]:
+    """Columns of the cells of merged ranges by their row, without the first cell, which holds the content."""
+    found, cells = dict[int, set[int]](), 0
     for left, top, right, bottom in _RANGE.findall(text):
         rows, columns = range(int(top), int(bottom) + 1), range(_column_number(left), _column_number(right) + 1)
-        if len(found) + len(rows) * len(columns) > MOST_CELLS:
+        cells += len(rows) * len(columns)
+        if cells > _MOST_CELLS:
             raise ValueError("too many merged cells")
-        found.update((row, column) for row in rows for column in columns if (row, column) != (rows[0], columns[0]))
+        for row in rows:
+            if covered := set(columns if row > rows[0] else columns[1:]):
+                found.setdefault(row, set()).update(covered)
     return found
 
 
@@ -269,13 +280,12 @@ def _read_ods(table: ElementTree.Element, where: str) -> Iterator[SheetRow]:
     for row in table.iter(f"{_TABLE}table-row"):
         repeated = int(row.get(f"{_TABLE}number-rows-repeated", "1"))
         content = tuple(_list_ods_cells(row))
-        for _ in range(repeated if content else 0):
-            cells += len(content)
-            if cells > MOST_CELLS or number > MOST_ROWS_OF_SHEET:
-                raise InputError(where, f"has more than {MOST_CELLS} cells", "Delete the empty rows and columns.")
-            yield SheetRow(number, content)
-            number += 1
-        number += 0 if content else repeated
+        if content:
+            cells += len(content) * repeated
+            if cells > _MOST_CELLS or number + repeated > _MOST_ROWS_OF_SHEET:
+                raise InputError(where, f"has more than {_MOST_CELLS} cells", "Delete the empty rows and columns.")
+            yield from (SheetRow(number + i, content) for i in range(repeated))
+        number += repeated
 
 
 def _list_ods_cells(row: ElementTree.Element) -> Iterable[SheetCell]:
@@ -289,7 +299,7 @@ def _list_ods_cells(row: ElementTree.Element) -> Iterable[SheetCell]:
         cell = _convert_ods(element)
         if cell == EMPTY:
             empty += repeated
-        elif len(cells) + empty + repeated > MOST_CELLS:
+        elif len(cells) + empty + repeated > _MOST_CELLS:
             raise ValueError("too many cells")
         else:
             cells += [EMPTY] * empty + [cell] * repeated
@@ -299,19 +309,19 @@ def _list_ods_cells(row: ElementTree.Element) -> Iterable[SheetCell]:
 
 def _convert_ods(element: ElementTree.Element) -> SheetCell:
     if element.tag == f"{_TABLE}covered-table-cell":
-        return SheetCell(fault=MERGED)
+        return SheetCell(fault=_MERGED)
     text = "\n".join(map(_join_text, element.iterfind(f"{_TEXT}p")))
     if element.get(_ERROR) == "error":
         return SheetCell(fault=Fault(f"is the error {text[:20]}", "Correct the formula."))
     match element.get(f"{_OFFICE}value-type"):
         case None if element.get(f"{_TABLE}formula") is not None:
-            return SheetCell(fault=FORMULA)
+            return SheetCell(fault=_FORMULA)
         case None | "string":
             return _convert_text(text)
         case "float":
             return _convert_number(float(element.attrib[f"{_OFFICE}value"]))
         case "date" | "time":
-            return SheetCell(fault=DATE)
+            return SheetCell(fault=_DATE)
         case kind:
             return SheetCell(fault=Fault(f"is a {kind[:20]}"))
 

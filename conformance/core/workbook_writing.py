@@ -16,10 +16,10 @@ from pydantic import BaseModel
 from pantocheck.conformance.core.key_paths import key_adapter
 from pantocheck.conformance.core.validation_messages import describe_field, list_bounds
 
-LONGEST_TEXT = 32_000
+_LONGEST_TEXT = 32_000
 """Longest text of a cell; the format permits 32,767 characters."""
 
-CHECKED_ROWS = 2000
+_CHECKED_ROWS = 2000
 """Rows below the head that have input checks."""
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -125,17 +125,18 @@ def _write_sheet(target: Any, sheet: WrittenSheet) -> None:
         if sheet.is_filled_in and not column.rule:
             target.column_dimensions[letter].number_format = "@"  # `+z` and `1-2` stay texts
         if sheet.is_filled_in and (column.words or column.rule or column.meaning):
-            target.add_data_validation(_build_check(column, letter, max(CHECKED_ROWS, 2 * len(sheet.rows))))
+            target.add_data_validation(_build_check(column, letter, max(_CHECKED_ROWS, 2 * len(sheet.rows))))
     target.freeze_panes = "A2"
 
 
 def _fill_cell(cell: Any, content: str | float | int) -> None:
     if isinstance(content, str):
-        cell.value = _NO_TEXT.sub("\ufffd", content)[:LONGEST_TEXT]
+        cell.value = _NO_TEXT.sub("\ufffd", content)[:_LONGEST_TEXT]
         cell.data_type = "s"  # never a formula
         cell.quotePrefix = content.startswith(_FORMULA_SIGNS)
     else:
-        cell.value = content
+        cell.value = repr(content)  # openpyxl would write 16 digits of a number
+        cell.data_type = "n"
 
 
 def _build_check(column: SheetColumn, letter: str, rows: int) -> Any:

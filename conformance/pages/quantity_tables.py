@@ -169,11 +169,11 @@ def render_quantity_list(results: Results) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
-    writer.writerows(row for case in results.cases for row in _list_rows(case))
+    writer.writerows(row for case in results.cases for row in list_quantity_rows(case))
     return text.getvalue()
 
 
-def _list_rows(case: CaseResult) -> Iterator[list[Any]]:
+def list_quantity_rows(case: CaseResult) -> Iterator[list[Any]]:
     """One row per quantity, or per item of a quantity with several values."""
     rows = [row for row in case.criteria if not row.is_drift]
     graded = {(str(row.pantograph), row.quantity, row.item): row for row in rows}

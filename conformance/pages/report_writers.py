@@ -122,6 +122,10 @@ def write_pages(
         from pantocheck.conformance.pages.quantity_tables import render_quantity_list
 
         write_atomically(folder / FILES["csv"], render_quantity_list(results).encode("utf-8"))
+    if "xlsx" in formats:
+        from pantocheck.conformance.pages.results_workbook import render_workbook
+
+        write_atomically(folder / FILES["xlsx"], render_workbook(results))
     if "badge" in formats:
         from pantocheck.conformance.pages.two_verdicts import render_badge
 

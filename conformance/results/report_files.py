@@ -17,6 +17,7 @@ FILES = {
     "pdf": "certificate.pdf",
     "json": "results.json",
     "csv": "quantities.csv",
+    "xlsx": "results.xlsx",
     "junit": "junit.xml",
     "md": "summary.md",
     "badge": "badge.svg",
@@ -38,12 +39,14 @@ def check_formats(stated: Sequence[str] | None) -> tuple[str, ...]:
             (`remark_missing_formats` says so).
 
     Raises:
-        InputError: Unknown format, or PDF is stated and its extra is not installed.
+        InputError: Unknown format, or the extra of a stated format is not installed.
     """
     if stated is None:
         return tuple(name for name in _order_formats(DEFAULT_FORMATS) if name != "pdf" or is_installed("typst"))
     if "pdf" in stated:
         require_package("typst", "format 'pdf'")
+    if "xlsx" in stated:
+        require_package("openpyxl", "format 'xlsx'")
     return _order_formats(stated)
 
 

@@ -26,8 +26,8 @@ blocks = partial(list_blocks, "line-tables.md")
 
 
 def command(name: str) -> list[str]:
-    """Arguments of the command of the page with this name."""
-    (line,) = (line for text in blocks("sh") for line in text.splitlines() if line.startswith(f"pantocheck {name} "))
+    """Arguments of the first command of the page with this name."""
+    line, *_ = (line for text in blocks("sh") for line in text.splitlines() if line.startswith(f"pantocheck {name} "))
     return shlex.split(line)[1:]
 
 
@@ -42,6 +42,15 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     write_static_record(tmp_path, columns)
     (tmp_path / "measured.toml").write_text(blocks("toml")[0])
     return tmp_path
+
+
+def test_workbooks_of_the_page_give_the_same_line(folder: Path) -> None:
+    (block,) = (text for text in blocks("sh") if "--formats xlsx" in text)
+    for line in block.splitlines():
+        done = CliRunner().invoke(app, shlex.split(line)[1:])
+        assert done.exit_code == 0, done.output
+    line = read_model(folder / "from-sheets.toml", LineFile, "line")
+    assert build_catenary(line) == build_catenary(read_unequal_line())
 
 
 def test_export_and_import_give_the_same_line_and_overwrite_no_input(folder: Path) -> None:

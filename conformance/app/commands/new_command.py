@@ -13,13 +13,7 @@ import typer
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
-from pantocheck.conformance.core.extras import require_package
 from pantocheck.conformance.core.input_error import InputError, suggest_names
-from pantocheck.conformance.core.toml_file import validate_model
-from pantocheck.conformance.core.workbook_writing import SheetColumn, WrittenSheet, describe_column, write_workbook
-from pantocheck.conformance.drops.drop_sidecar import DropChannelTable
-from pantocheck.conformance.line.line_export import export_workbook
-from pantocheck.conformance.line.line_file import LineFile
 
 NewKind = Literal["line", "case", "pantograph", "response", "static", "administration", "dossier"]
 """Kinds of input files with a template."""
@@ -57,6 +51,13 @@ def fill_case_template(path: Path, parts: Mapping[str, str]) -> str:
 
 def build_sheets(kind: SheetKind) -> bytes:
     """Workbook to fill in, with the values of the template as examples."""
+    from pantocheck.conformance.core.extras import require_package
+    from pantocheck.conformance.core.toml_file import validate_model
+    from pantocheck.conformance.core.workbook_writing import SheetColumn, WrittenSheet, describe_column, write_workbook
+    from pantocheck.conformance.drops.drop_sidecar import DropChannelTable
+    from pantocheck.conformance.line.line_export import export_workbook
+    from pantocheck.conformance.line.line_file import LineFile
+
     if kind == "line":
         return export_workbook(validate_model(tomllib.loads(read_template("line")), LineFile, "template"))
     require_package("openpyxl", "format 'xlsx'")
@@ -108,7 +109,9 @@ def new_command(
         ),
     ] = None,
 ) -> CommandOutput:
-    """Write a commented, valid input file to start from, or a sheet to fill in.
+    """Write a commented, valid input file to start from.
+
+    A name that ends in .xlsx gives a sheet to fill in.
 
     Examples:
 
@@ -119,7 +122,7 @@ def new_command(
     pantocheck new static heights.xlsx
     """
     sheet = next((known for known in SHEET_KINDS if known == kind), None)
-    if sheet is not None and file is not None and file.suffix.lower() == ".xlsx":
+    if sheet is not None and file is not None and file.suffix == ".xlsx":
         return _write_sheets(sheet, file)
     chosen = next((known for known in NEW_KINDS if known == kind), None)
     if chosen is None:
@@ -142,10 +145,12 @@ def _fill_template(kind: NewKind, table: str) -> str:
 
 
 def _write_sheets(kind: SheetKind, path: Path) -> CommandOutput:
-    """Write a workbook; beside that of static values, the sidecar."""
-    content, files = build_sheets(kind), [path]
-    if kind == "static":
-        files.append(path.with_suffix(".toml"))
-        write_new_file(files[1], _fill_template("static", path.name))
+    """Write a workbook; beside that of static values, its sidecar."""
+    content, sidecar = build_sheets(kind), path.with_suffix(".toml")
+    files = [path, sidecar] if kind == "static" else [path]
+    if found := [file for file in files if file.exists()]:
+        raise InputError(f"file '{found[0]}'", "exists already", "Give another name. No file is overwritten.")
     write_new_file(path, content, ".xlsx")
+    if kind == "static":
+        write_new_file(sidecar, _fill_template("static", path.name))
     return CommandOutput(escape_text(f"new sheets: {kind}"), {"kind": kind}, files=files)

@@ -12,15 +12,20 @@ import pytest
 from pydantic import BaseModel
 
 from helpers.command_line import pantocheck
-from pantocheck.conformance.app.commands.new_command import NEW_KINDS, NewKind, read_template
+from pantocheck.conformance.app.commands.new_command import NEW_KINDS, SHEET_KINDS, NewKind, read_template
 from pantocheck.conformance.app.file_check import check_input_file
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.comparison.static_record import StaticSidecar
 from pantocheck.conformance.core.key_paths import find_field, key_adapter, list_models
+from pantocheck.conformance.core.spreadsheet import read_spreadsheet
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.core.validation_messages import list_bounds
 from pantocheck.conformance.dossier.dossier_file import DossierFile
+from pantocheck.conformance.drops.drop_sidecar import DropChannelTable
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_import import import_line
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.response_record import ResponseSidecar
 from pantocheck.conformance.results.administration import Administration
@@ -29,7 +34,7 @@ from pantocheck.conformance.runs.system import Delivered
 
 MODELS: dict[NewKind, type[BaseModel]] = {
     "line": LineFile, "case": CaseFile, "pantograph": PantographFile, "response": ResponseSidecar,
-    "administration": Administration, "dossier": DossierFile,
+    "static": StaticSidecar, "administration": Administration, "dossier": DossierFile,
 }  # fmt: skip
 
 new = partial(pantocheck, "new")
@@ -100,6 +105,23 @@ def test_names_with_quotes_keep_the_case_readable(folder: Path) -> None:
     assert load_case(folder / "case.toml").line.title == "My line"
 
 
+@pytest.mark.parametrize("kind", SHEET_KINDS)
+def test_new_sheets_can_be_used_at_once(kind: str, folder: Path) -> None:
+    """The sheets of a line give the line of the template; that of static values has its sidecar."""
+    assert new(kind, "new.xlsx").exit_code == 0
+    assert new(kind, "new.xlsx").exit_code == 2  # nothing is overwritten
+    if kind == "line":
+        new("line")
+        line = import_line(folder / "line.toml", folder / "new.xlsx", None)
+        assert build_catenary(LineFile.model_validate(line)) == build_catenary(
+            read_model(folder / "line.toml", LineFile, "line")
+        )
+    elif kind == "static":
+        assert check_input_file(folder / "new.toml").startswith("static record: 3 positions")
+    else:
+        assert read_spreadsheet(folder / "new.xlsx").head.cells == tuple(DropChannelTable.model_fields)
+
+
 def uncomment(text: str) -> str:
     """Template whose commented keys and tables are in use."""
     return re.sub(r"^# (?=\[|\w+ = )", "", text, flags=re.MULTILINE)
@@ -140,7 +162,7 @@ def test_comments_state_the_bounds_of_every_number(kind: NewKind) -> None:
     """The bounds stand on the line of the key, or on a comment line that names the key."""
     text = read_template(kind)
     numbers = list(list_numbers(MODELS[kind], tomllib.loads(text)))
-    fewest = {"line": 20, "case": 2, "pantograph": 3, "response": 2, "administration": 0, "dossier": 2}
+    fewest = {"line": 20, "case": 2, "pantograph": 3, "response": 2, "static": 2, "administration": 0, "dossier": 2}
     assert len(numbers) >= fewest[kind]
     missing = [
         (key, bounds)

@@ -9,7 +9,7 @@ from pantocheck.conformance.core.measured_table import CSV, HDF5, TABLE_FORMATS,
 
 
 def test_formats_follow_from_unique_suffixes_and_are_listed() -> None:
-    assert list_suffixes(TABLE_FORMATS) == ".csv, .uff, .mat, .h5, .tdms, .mf4 or .parquet"
+    assert list_suffixes(TABLE_FORMATS) == ".csv, .uff, .mat, .h5, .tdms, .mf4, .parquet, .xlsx or .ods"
     assert list_suffixes((CSV,)) == ".csv"
     with pytest.raises(InputError, match=r"has the unknown suffix '\.xls'\.\n  Known formats are \.csv or \.h5\."):
         find_table_format(Path("a.xls"), (CSV, HDF5))

@@ -2,6 +2,7 @@
 
 import gc
 import sys
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,8 +11,10 @@ import h5py
 import numpy as np
 import pytest
 import scipy.io
+import tomli_w
 
 from helpers.drop_records import RATE, N, assert_same_record
+from helpers.workbooks import convert_to_ods, write_rows
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
@@ -51,6 +54,38 @@ def test_sidecar_replaces_no_other_file(tmp_path: Path, record: DropRecord, name
     case.write_text('[test]\nname = "earlier"\n[drop]\n')
     write(record, tmp_path / name)
     assert "earlier" not in case.read_text()
+
+
+@pytest.mark.parametrize("name", ["sensors.csv", "sensors.xlsx", "sensors.ods"])
+def test_channels_are_read_from_a_sheet(tmp_path: Path, record: DropRecord, name: str) -> None:
+    """The sheet replaces the tables [[channel]]; a position may be given in another unit."""
+    write_drop_csv(record, tmp_path / "r.csv")
+    tree = tomllib.loads((tmp_path / "r.toml").read_text())
+    channels = tree.pop("channel")
+    (tmp_path / "r.toml").write_text(tomli_w.dumps({"channel_file": name} | tree))
+    keys = list(dict.fromkeys(key for channel in channels for key in channel))
+    rows = [keys, *([channel.get(key) for key in keys] for channel in channels)]
+    if name == "sensors.csv":
+        text = "\n".join(";".join("" if cell is None else str(cell) for cell in row) for row in rows)
+        (tmp_path / name).write_text(text)
+    else:
+        convert_to_ods(write_rows(tmp_path / "sensors.xlsx", rows, "sensors"))
+    (read,) = read_drop_records(tmp_path / "r.csv")
+    assert_same_record(read, record, 1e-8)
+    assert read.channels == record.channels
+
+
+def test_wrong_sheets_of_channels_are_refused(tmp_path: Path, record: DropRecord) -> None:
+    write_drop_csv(record, tmp_path / "r.csv")
+    sidecar = (tmp_path / "r.toml").read_text()
+    (tmp_path / "r.toml").write_text('channel_file = "s.xlsx"\n' + sidecar)
+    with pytest.raises(InputError, match="given beside channel_file"):
+        read_drop_records(tmp_path / "r.csv")
+    (tmp_path / "r.toml").write_text('channel_file = "s.xlsx"\n' + sidecar.partition("[[channel]]")[0])
+    write_rows(tmp_path / "s.xlsx", [["column", "name", "sensor", "direction", "unit"], [0.5, "a", 1, None, "g"]])
+    with pytest.raises(InputError) as caught:
+        read_drop_records(tmp_path / "r.csv")
+    assert [problem.where.partition("row 2")[1] for problem in caught.value.problems] == ["row 2"] * 3
 
 
 # HDF5 records of mass drops: round trip of several runs, damaged files.

@@ -7,6 +7,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from openpyxl import load_workbook
 
 from helpers.shown_page import summarise
 from pantocheck.conformance.pages import document as doc
@@ -14,6 +15,7 @@ from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.quantity_tables import render_quantity_list
 from pantocheck.conformance.pages.report_writers import write_pages
+from pantocheck.conformance.pages.results_workbook import render_workbook
 from pantocheck.conformance.pages.two_verdicts import render_badge
 from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_format import Results
@@ -108,6 +110,38 @@ def test_list_of_quantities_has_a_row_for_each_item_and_pages_one_file(passing: 
     assert values == [("20.0", "0.5", "0.5"), ("55.0", "0.25", "0.25")]
     write_pages(Results.model_validate(passing), tmp_path, list(FILES))
     assert {path.name for path in tmp_path.iterdir()} == set(FILES.values()) - {"results.json"}
+
+
+def test_workbook_has_every_number_with_its_unit_and_no_formula(
+    results: dict[str, Any], hostile: dict[str, Any], tmp_path: Path
+) -> None:
+    """Sheets hold the numbers of results.json to the last digit."""
+    found = Results.model_validate(results)
+    (tmp_path / "a.xlsx").write_bytes(render_workbook(found))
+    sheets = {sheet.title: list(sheet.iter_rows(values_only=True)) for sheet in load_workbook(tmp_path / "a.xlsx")}
+    assert [row[0] for row in sheets["verdicts"][1:]] == ["all", *(case.id for case in found.cases)]
+    assert [row[2] for row in sheets["verdicts"][1:]] == [found.verdict, *(case.verdict for case in found.cases)]
+    criteria = [row for case in found.cases for row in case.criteria]
+    head, *rows = sheets["criteria"]
+    shown = [dict(zip(head, row, strict=True)) for row in rows if row[1] == "criteria"]
+    assert [(row["value"], row["lower limit"], row["verdict"], row["unit"]) for row in shown] == [
+        (row.value, row.lower, row.verdict, row.unit) for row in criteria
+    ]
+    head, *rows = sheets["quantities"]
+    shown = [dict(zip(head, row, strict=True)) for row in rows]
+    values = {(row["case"], str(row["pantograph"])): row["Mean contact force [N]"] for row in shown}
+    for case in found.cases:
+        for owner, quantities in case.quantities.items():
+            assert values[case.id, owner] == quantities.get("mean_force_N")
+    head, *rows = sheets["uncertainty"]
+    rear = next(row for row in rows if row[:3] == ("en50318-2002/250", "2", "Standard deviation, 0–20 Hz"))
+    shown_row = dict(zip(head, rear, strict=True))
+    assert (shown_row["discretisation"], shown_row["section"]) == (0.0015 * shown_row["value"], "NA")
+    content = render_workbook(Results.model_validate(hostile))
+    (tmp_path / "b.xlsx").write_bytes(content)
+    cells = [cell for sheet in load_workbook(tmp_path / "b.xlsx") for row in sheet.iter_rows() for cell in row]
+    assert {cell.data_type for cell in cells} == {"s", "n"}
+    assert render_workbook(Results.model_validate(hostile)) == content
 
 
 def test_modified_copy_is_named_in_every_format(passing: dict[str, Any]) -> None:

@@ -1,0 +1,1 @@
+"""results.xlsx: the numbers of results.json, each with its unit."""
