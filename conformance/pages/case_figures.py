@@ -27,6 +27,7 @@ from pantocheck.conformance.core.figure_style import (
 )
 from pantocheck.conformance.core.results_part import Number, select_single
 from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.band_figure import draw_bands
 from pantocheck.conformance.pages.criteria_table import name_figure
 from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
 from pantocheck.conformance.pages.passage_figure import draw_passage
@@ -41,12 +42,13 @@ LISTED_SUPPORTS = 3
 
 
 def draw_case_figures(case: CaseResult, number: int, anchor: str) -> Iterator[doc.Figure]:
-    """Charts of a study, then the passage, then force, spectrum and histogram of each pantograph, then the uplift.
+    """Charts of a study, then passage, bands, then force, spectrum and histogram of each pantograph, then the uplift.
 
     `number` is the index of the case in the results, `anchor` that of the section of the case.
     """
     yield from _chart_figures(case.charts)
     yield from draw_passage(case, number, anchor)
+    yield from draw_bands(case)
     limited = [row for row in case.criteria if not row.is_drift]
     for key, trace in sorted(case.traces.items(), key=lambda item: (len(item[0]), item[0])):
         supported = find_supported_Hz(case.supported, key)

@@ -61,6 +61,7 @@ class ForceView {
     this.plot = new Plot({
       ...{ label: fill(translate("Contact force of {t}"), { t: name }), xLabel: translate("position along the track [m]") },
       ...{ xUnit: "m", yLabel: translate("contact force [N]"), yUnit: "N", height: 300, x, lines, curves: forceCurves(this.trace, reference) },
+      levels: forceLevels(this.case, Number(figure.dataset.owner), "ink"),
     });
     const strips = stripForces(this.trace);
     const headings = ["position_m", "force_N", "force_20_N", ...(reference.length ? ["reference_force_20_N"] : [])];

@@ -13,7 +13,7 @@ const FEWEST_POINTS = 8;
  * Plot of curves over a common axis.
  *
  * @param {object} content `label`, `xLabel`, `xUnit`, `yLabel`, `yUnit`, `height` [px]; `x`, and `curves` with `label`, `values`,
- *   `colour`, `dash`, `width` and `hidden`; `lines`, positions of vertical lines.
+ *   `colour`, `dash`, `width` and `hidden`; `lines`, positions of vertical lines; `levels`, limits with `lower`, `upper` and `text`.
  */
 class Plot {
   constructor(content) {
@@ -31,7 +31,9 @@ class Plot {
   /** Name of the plot for screen readers, with its keys. */
   describe() {
     const keys = translate("Arrow keys read values, with shift they move the stretch; plus and minus zoom; home shows all.");
-    return `${this.content.label}. ${keys}`;
+    const limits = (this.content.levels ?? []).map(({ lower, upper, text }) => `${text} ${formatNumber(lower)}–${formatNumber(upper)} ${this.content.yUnit}`);
+    const levels = limits.length ? ` ${translate("Limits")}: ${limits.join("; ")}.` : "";
+    return `${this.content.label}.${levels} ${keys}`;
   }
 
   /** Draw the plot in its place of the page, which must be visible. */
@@ -51,12 +53,13 @@ class Plot {
       height,
       legend: { show: false },
       cursor: { drag: { x: true, y: false }, bind: { mousedown: (...parts) => bindDrag(this, ...parts) } },
-      scales: { x: { time: false } },
+      scales: { x: { time: false }, y: { range: (_, low, high) => this.findHeights(low, high) } },
       axes: [axis(xLabel, 42), axis(yLabel, 52)],
       series: [{}, ...series],
       hooks: {
         setScale: [(canvas, scale) => scale === "x" && this.readStretch()],
         setCursor: [() => this.legend.showValues()],
+        drawAxes: [() => drawLimits(this)],
         draw: [() => drawLines(this)],
       },
     };
@@ -65,6 +68,12 @@ class Plot {
     onSchemeChange(() => this.canvas.redraw());
     bindKeys(this);
     bindTouch(this);
+  }
+
+  /** Range of the vertical axis: that of the visible values and of all limits, with a margin. */
+  findHeights(low, high) {
+    const values = [low, high, ...(this.content.levels ?? []).flatMap(({ lower, upper }) => [lower, upper])].filter(Number.isFinite);
+    return values.length ? uPlot.rangeNum(Math.min(...values), Math.max(...values), 0.1, true) : [null, null];
   }
 
   /** Fit the canvas to the width of the page. */

@@ -104,7 +104,9 @@ def test_page_without_script_shows_every_figure_and_no_tools(open_page: Any) -> 
     shown = example()["cases"]
     first_page = page.locator(".answers figure > div > svg").count()
     assert first_page > 0
-    assert figures.count() - first_page == sum(3 * len(case["traces"]) + bool(case["uplift"]) for case in shown)
+    assert figures.count() - first_page == sum(
+        3 * len(case["traces"]) + bool(case["traces"]) + bool(case["uplift"]) for case in shown
+    )
     assert all(figure.is_visible() for figure in figures.all())
     summary = page.locator("summary", has_text="All quantities").first
     summary.click()

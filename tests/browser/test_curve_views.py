@@ -16,6 +16,7 @@ from pantocheck.conformance.quantities.bands import amplitude_spectrum
 pytestmark = pytest.mark.thorough
 
 FIGURE = "#case-1-force-1"
+LEVELS = ("mean_force_N", "max_force_N", "min_force_N")
 TRACE = example()["cases"][0]["traces"]["1"]
 POSITION = np.array(TRACE["position_m"])
 
@@ -111,6 +112,27 @@ def test_mouse_shows_the_values_of_the_curves(page: Any) -> None:
     assert_allclose(place, POSITION[sample], atol=1e-3)
     expected = (TRACE["force_N"][sample], TRACE["force_20_N"][sample], TRACE["mean_N"])
     assert_allclose((unfiltered, filtered, mean), expected, rtol=5e-4)
+
+
+def test_limits_of_the_force_are_shown_and_named(page: Any) -> None:
+    """Their names and values are read with the plot, and their ground changes its picture."""
+    rows = [row for row in example()["cases"][0]["criteria"] if row["pantograph"] == 1 and row["lower"] is not None]
+    [mean] = [row for row in rows if row["quantity"] == "mean_force_N"]
+    label = str(plot_area(page).get_attribute("aria-label")).replace("−", "-")
+    assert f"mean {mean['lower']:g}–{mean['upper']:g} N" in label
+    ground = page.evaluate(
+        """figure => {
+          const canvas = document.querySelector(`${figure} canvas`);
+          const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          const isPale = (i) => data[i] === 243 && data[i + 1] === 245 && data[i + 2] === 247;
+          const count = data.length / 4;
+          return Array.from({ length: count }, (_, n) => isPale(4 * n)).filter(Boolean).length / count;
+        }""",
+        FIGURE,
+    )
+    shares = [row["upper"] - row["lower"] for row in rows if row["quantity"] in LEVELS]
+    # The limits span a tenth of the axis from 30 to 230 N each at least, less what curves and names hide.
+    assert 0.4 * sum(shares) / 200 < ground < sum(shares) / 200
 
 
 def test_legend_switches_curves(page: Any) -> None:

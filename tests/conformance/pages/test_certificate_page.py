@@ -169,6 +169,7 @@ def test_certificate_of_a_record_with_gaps(passing: dict[str, Any]) -> None:
     [figures] = sections["Figures"].blocks
     assert isinstance(figures, doc.Figures)
     assert [figure.caption.split(":")[0] for figure in figures.figures] == [
+        "Force by frequency",
         *2 * ["Pantograph 1"],
         *3 * ["Pantograph 2"],
         "Uplift at the supports. Largest",
