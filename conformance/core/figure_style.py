@@ -1,24 +1,27 @@
-"""One style for all figures: SVG, letters as paths, no dates, the same bytes every time."""
+"""One style for all figures: SVG, letters as text, no dates, the same bytes every time.
+
+matplotlib is imported by the functions that use it: it takes half a second, which a certificate without charts does not
+need.
+"""
 
 import io
 from collections.abc import Callable, Iterable
 from functools import cache, wraps
 from importlib.resources import as_file
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
-import matplotlib
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.look import read_look
 from pantocheck.conformance.core.reproducibility import read_source_date
 from pantocheck.conformance.core.texts import TEMPLATES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
 
 _LOOK = read_look()
 INK, GREY, PALE = _LOOK["light"]["ink"], _LOOK["figure"]["grey"], _LOOK["figure"]["ground"]
@@ -57,18 +60,23 @@ Content = TypeVar("Content")
 @cache
 def read_style() -> Any:
     """Settings of matplotlib of the common style."""
+    import matplotlib
+
     with as_file(TEMPLATES / "figure.mplstyle") as path:
         settings = dict(matplotlib.rc_params_from_file(path, use_default_template=True))
     # The backend is the choice of the importing program; `render_svg` names its canvas.
     return {key: value for key, value in settings.items() if not key.startswith("backend")}
 
 
-def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
+def render_svg(paint: "Callable[Arguments, Figure]") -> Callable[Arguments, str]:
     """Turn a function that paints a figure into a function that returns its SVG text in the common style."""
 
     @wraps(paint)
     def render(*args: Arguments.args, **kwargs: Arguments.kwargs) -> str:
         """Paint the figure in the common style; return its SVG text."""
+        import matplotlib
+        from matplotlib.backends.backend_svg import FigureCanvasSVG
+
         read_source_date()  # refuse a wrong date: matplotlib reads it as well and fails without a message
         with matplotlib.rc_context(read_style()):
             buffer = io.StringIO()
@@ -82,21 +90,14 @@ def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
     return render
 
 
-def draw_symbol(axes: Axes, name: str, foot: tuple[float, float], half_width: float, length: float) -> None:
-    """Draw the symbol of a mass, spring or damper from its foot upwards, in the units of the axes."""
-    for line in _LOOK["symbol"][name]:
-        across, along = np.transpose(line)
-        axes.plot(foot[0] + half_width * across, foot[1] + length * along, color=INK, linewidth=0.9)
-
-
-def render_pdf_pages(paint: Callable[[Content], Figure], contents: Iterable[Content]) -> bytes:
+def render_pdf_pages(paint: "Callable[[Content], Figure]", contents: Iterable[Content]) -> bytes:
     """Render figures in the common style as the pages of a PDF; equal figures give equal bytes.
 
     Args:
         paint: Function that paints one page.
         contents: Argument of the function for each page.
     """
-    # Imported here: it takes 0.3 s, which a certificate does not need.
+    import matplotlib
     from matplotlib.backends.backend_pdf import FigureCanvasPdf, PdfPages
 
     buffer = io.BytesIO()
@@ -110,20 +111,29 @@ def render_pdf_pages(paint: Callable[[Content], Figure], contents: Iterable[Cont
     return buffer.getvalue()
 
 
-def add_legend(axes: Axes, columns: int = 5) -> None:
+def new_figure(width: float, height: float) -> "Figure":
+    """A new figure of matplotlib of a size [in]."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height))
+
+
+def add_legend(axes: "Axes", columns: int = 5) -> None:
     """A legend above the axes, where it cannot cover the data."""
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=columns, borderaxespad=0.2, columnspacing=1.4)
 
 
-def use_decades(axes: Axes) -> None:
+def use_decades(axes: "Axes") -> None:
     """A logarithmic vertical axis with one tick per decade: ticks between decades take most of the time of a figure."""
     axes.set_yscale("log")
     label_decades(axes.yaxis)
     axes.minorticks_off()
 
 
-def label_decades(axis: Axis) -> None:
+def label_decades(axis: "Axis") -> None:
     """Label the decades of a logarithmic axis with plain letters: the style reads no text as a formula."""
+    from matplotlib.ticker import NullFormatter
+
     axis.set_major_formatter(lambda value, _: format_decade(value))
     axis.set_minor_formatter(NullFormatter())
 
@@ -133,7 +143,7 @@ def format_decade(value: float) -> str:
     return "0" if value == 0 else "10" + f"{round(np.log10(value)):d}".translate(SUPERSCRIPTS)
 
 
-def add_box(axes: Axes, values: RealArray, place: float) -> None:
+def add_box(axes: "Axes", values: RealArray, place: float) -> None:
     """Quartiles and median of some values as a box at one place of the x axis, whose ticks are kept."""
     axes.boxplot(
         values,

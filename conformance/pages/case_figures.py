@@ -5,9 +5,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Chart, Histogram, Traces, UpliftTrace
 from pantocheck.conformance.core.figure_style import (
@@ -21,15 +18,14 @@ from pantocheck.conformance.core.figure_style import (
     LINES,
     PALE,
     SHADES,
-    PlotStyle,
-    add_legend,
-    render_svg,
 )
+from pantocheck.conformance.core.panel_figure import Panel, PanelFigure, write_svg
+from pantocheck.conformance.core.panel_marks import LineStyle
 from pantocheck.conformance.core.results_part import Number, select_single
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.band_figure import draw_bands
 from pantocheck.conformance.pages.criteria_table import name_figure
-from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
+from pantocheck.conformance.pages.fixed_panels import PanelGrid, lay_panels
 from pantocheck.conformance.pages.passage_figure import draw_passage
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.pages.words import format_plain, format_value
@@ -130,15 +126,7 @@ def _histogram_figure(key: str, trace: Traces, histogram: Histogram) -> doc.Figu
 MOST_SUPPORT_TICKS = 12
 """Largest number of supports whose positions are the ticks of the track."""
 
-RIGHT_OF_AXES: PlotStyle = {"va": "center", "ha": "left", "fontsize": 6.5}
-"""Style of the names of limits."""
-
-REFERENCE_STYLE: PlotStyle = {
-    "color": INK,
-    "linewidth": 1.1,
-    "linestyle": (0, (3, 1.5)),
-    "label": "reference, 0–20 Hz",
-}
+REFERENCE_STYLE = LineStyle(INK, 1.1, (0, (3, 1.5)))
 """Style of the force of the reference; it is hidden where the force of the system lies on it."""
 
 
@@ -146,27 +134,28 @@ STRIP_COLORS = {"front strip": CURVES[1], "rear strip": CURVES[2]}
 """Colours of the forces of both strips."""
 
 
-@render_svg
-def draw_force(trace: Traces, reference: list[float]) -> Figure:
+@write_svg
+def draw_force(trace: Traces, reference: list[float]) -> PanelFigure:
     """Contact force of one pantograph over its reference, if any."""
     strips = tuple(zip(trace.strip_forces_N or (), STRIP_COLORS.items(), strict=False))
-    figure, [[axes]] = add_panels(PanelGrid(FULL, 1.55, right=0.18, top=0.44 if reference or strips else 0.28))
+    figure, [[axes]] = lay_panels(PanelGrid(FULL, 1.55, right=0.18, top=0.44 if reference or strips else 0.28))
     position = trace.position_m
     if trace.force_N:
-        axes.plot(position, trace.force_N, color=GREY, linewidth=0.6, label="unfiltered")
+        axes.plot(position, trace.force_N, LineStyle(GREY, 0.6), "unfiltered")
     for force, (label, color) in strips:
-        axes.plot(position, force, color=color, linewidth=0.5, label=label)
+        axes.plot(position, force, LineStyle(color, 0.5), label)
     if reference:
-        axes.plot(position, reference, **REFERENCE_STYLE)
+        axes.plot(position, reference, REFERENCE_STYLE, "reference, 0–20 Hz")
     if trace.force_20_N:
-        axes.plot(position, trace.force_20_N, color=INK, linewidth=1.2, label="0–20 Hz")
+        axes.plot(position, trace.force_20_N, LineStyle(INK, 1.2), "0–20 Hz")
     _draw_levels(axes.axhline, trace)
     for number, support in enumerate(trace.supports_m):
-        axes.axvline(support, color=INK, linewidth=0.8, linestyle=":", label=None if number else "support")
-    axes.set(xlim=(position[0], position[-1]), xlabel="position along the track [m]", ylabel="contact force [N]")
+        axes.axvline(support, LineStyle(INK, 0.8, ":"), None if number else "support")
+    axes.x_scale.limits = (position[0], position[-1])
+    axes.name_axes("position along the track [m]", "contact force [N]")
     if 1 < len(trace.supports_m) <= MOST_SUPPORT_TICKS:
-        axes.set_xticks(trace.supports_m, [f"{support:g}" for support in trace.supports_m])
-    add_legend(axes, 4 if strips else 3 if reference else 5)
+        axes.x_scale.ticks, axes.x_scale.write = trace.supports_m, "{:g}".format
+    axes.add_legend(4 if strips else 3 if reference else 5)
     return figure
 
 
@@ -195,81 +184,76 @@ def draw_limited_forces(cases: Sequence[CaseResult]) -> tuple[doc.Figure, ...]:
     return tuple(figures)
 
 
-@render_svg
-def draw_limited_force(trace: Traces, rows: Sequence[Criterion], width: float) -> Figure:
+@write_svg
+def draw_limited_force(trace: Traces, rows: Sequence[Criterion], width: float) -> PanelFigure:
     """Force up to 20 Hz with the limits of its mean and extremes as grey bands, or as dashed lines of single limits."""
-    figure, [[axes]] = add_panels(PanelGrid(width, 0.7, right=0.6, bottom=0.2, top=0.05))
+    figure, [[axes]] = lay_panels(PanelGrid(width, 0.7, right=0.6, bottom=0.2, top=0.05))
     position, force = trace.position_m, trace.force_20_N or []
     for row in rows:
         if row.lower is not None and row.upper is not None:
-            axes.axhspan(row.lower, row.upper, color=LIMIT_FILL, linewidth=0, zorder=0)
-            axes.text(
-                1.01,
-                (row.lower + row.upper) / 2,
-                LIMITED[row.quantity],
-                **RIGHT_OF_AXES,
-                transform=axes.get_yaxis_transform(),
-            )
+            axes.axhspan(row.lower, row.upper, LIMIT_FILL)
+            place = (1.01, (row.lower + row.upper) / 2)
+            axes.text(*place, LIMITED[row.quantity], 6.5, va="center", frame=("panel", "data"))
         else:
             for limit in (row.lower, row.upper):
                 if limit is not None:
-                    axes.axhline(limit, color=INK, linewidth=0.9, linestyle=LIMIT_LINE)
-    axes.axhline(trace.mean_N, color=INK, linewidth=0.8, linestyle="-.")
-    axes.plot(position, force, color=INK, linewidth=0.9)
-    axes.set(xlim=(position[0], position[-1]), ylabel="force [N]")
-    axes.locator_params(axis="x", nbins=4 if width == HALF else 8)
-    axes.xaxis.set_major_formatter(lambda x, _: f"{x:g} m")
+                    axes.axhline(limit, LineStyle(INK, 0.9, LIMIT_LINE))
+    axes.axhline(trace.mean_N, LineStyle(INK, 0.8, "-."))
+    axes.plot(position, force, LineStyle(INK, 0.9))
+    axes.x_scale.limits = (position[0], position[-1])
+    axes.name_axes("", "force [N]")
+    axes.x_scale.intervals = 4 if width == HALF else 8
+    axes.x_scale.write = "{:g} m".format
     return figure
 
 
-@render_svg
-def draw_spectrum(trace: Traces, quantities: Mapping[str, Number], supported_Hz: float | None = None) -> Figure:
+@write_svg
+def draw_spectrum(trace: Traces, quantities: Mapping[str, Number], supported_Hz: float | None = None) -> PanelFigure:
     """Single-sided amplitude spectrum of the unfiltered force with the three bands and their RMS.
 
     Above the supported frequency [Hz], bands and spectrum are grey.
     """
     frequency, amplitude = trace.spectrum.frequency_Hz, trace.spectrum.amplitude_N
-    figure, [[axes]] = add_panels(PanelGrid(HALF, 1.3))
-    axes.plot(frequency, amplitude, color=INK, linewidth=0.9)
-    above: PlotStyle = {"va": "bottom", "fontsize": 7}
+    figure, [[axes]] = lay_panels(PanelGrid(HALF, 1.3))
+    axes.plot(frequency, amplitude, LineStyle(INK, 0.9))
     for number, (low, high, quantity) in enumerate(BANDS):
-        axes.axvspan(low, high, color=PALE if number % 2 == 0 else "white", zorder=0)
-        axes.axvline(high, color=GREY, linewidth=0.8, linestyle="--")
+        axes.axvspan(low, high, PALE if number % 2 == 0 else "white")
+        axes.axvline(high, LineStyle(GREY, 0.8, "--"))
         rms = select_single(quantities.get(quantity))
         text = f"{low}–{high}" + (f"\n{format_value(rms, 3)}" if rms is not None else "")
         colour = INK if supported_Hz is None or high <= supported_Hz else GREY
-        place = ((low + high) / 2, 1.02)
-        axes.text(*place, text, ha="center", color=colour, transform=axes.get_xaxis_transform(), **above)
+        axes.text((low + high) / 2, 1.02, text, color=colour, ha="center", va="bottom", frame=("data", "panel"))
     if supported_Hz is not None and supported_Hz < EXTENDED_BAND.high:
-        axes.axvspan(supported_Hz, EXTENDED_BAND.high, color=GREY, alpha=0.6, linewidth=0, zorder=3)
-    axes.text(-0.02, 1.02, "Hz\nrms [N]", ha="right", transform=axes.transAxes, **above)
-    axes.set_ylim(bottom=0)
-    axes.set(xlim=(0, 50), xticks=[0, 5, 10, 20, 30, 40, 50], xlabel="frequency [Hz]", ylabel="amplitude [N]")
+        axes.axvspan(supported_Hz, EXTENDED_BAND.high, GREY, opacity=0.6, level=3.0)
+    axes.text(-0.02, 1.02, "Hz\nrms [N]", ha="right", va="bottom", frame=("panel", "panel"))
+    axes.x_scale.limits, axes.x_scale.ticks = (0, 50), [0, 5, 10, 20, 30, 40, 50]
+    axes.y_scale.limits = (0, None)
+    axes.name_axes("frequency [Hz]", "amplitude [N]")
     return figure
 
 
-@render_svg
-def draw_histogram(trace: Traces, histogram: Histogram) -> Figure:
+@write_svg
+def draw_histogram(trace: Traces, histogram: Histogram) -> PanelFigure:
     """Histogram of the 20 Hz force with its mean and mean plus and minus three standard deviations."""
     edges, share = histogram.edges_N, histogram.share_pct
-    figure, [[axes]] = add_panels(PanelGrid(HALF, 1.3))
-    axes.set_ylim(0, 1.08 * max(share))
-    axes.stairs(share, edges, fill=True, facecolor=SHADES[3], edgecolor=INK, linewidth=0.6)
+    figure, [[axes]] = lay_panels(PanelGrid(HALF, 1.3))
+    axes.y_scale.limits = (0, 1.08 * max(share))
+    axes.stairs(share, edges, SHADES[3], INK, 0.6)
     if trace.std_N is not None:
         _draw_levels(axes.axvline, trace)
-        axes.margins(x=0.04)
-        add_legend(axes)
-    axes.set(xlabel="contact force, 0–20 Hz [N]", ylabel="share of samples [%]")
+        axes.x_scale.margin = 0.04
+        axes.add_legend()
+    axes.name_axes("contact force, 0–20 Hz [N]", "share of samples [%]")
     return figure
 
 
-def _draw_levels(draw_line: Callable[..., object], trace: Traces) -> None:
+def _draw_levels(draw_line: Callable[[float, LineStyle, str | None], None], trace: Traces) -> None:
     """The mean and mean plus and minus three standard deviations, if they are known."""
     mean, std = trace.mean_N, trace.std_N
     if std is not None:
-        draw_line(mean, color=INK, linewidth=0.9, linestyle="-.", label="mean")
+        draw_line(mean, LineStyle(INK, 0.9, "-."), "mean")
         for level, label in ((mean + 3 * std, "mean ± 3 σ"), (mean - 3 * std, None)):
-            draw_line(level, color=INK, linewidth=0.9, linestyle="--", label=label)
+            draw_line(level, LineStyle(INK, 0.9, "--"), label)
 
 
 # Uplift of the contact wire at the supports.
@@ -280,40 +264,40 @@ MOST_NAMED = 8
 """Largest number of supports with a line style each; of more, only the largest uplift stands out."""
 
 
-@render_svg
-def draw_uplift(supports: Sequence[UpliftTrace], criteria: Sequence[Criterion]) -> Figure:
+@write_svg
+def draw_uplift(supports: Sequence[UpliftTrace], criteria: Sequence[Criterion]) -> PanelFigure:
     """Uplift over time at the supports of a case, with the limits of the maximum where its criteria grade it."""
     names = len(supports) + 1 if len(supports) <= MOST_NAMED else 3
-    figure, [[axes]] = add_panels(PanelGrid(FULL, 1.4, top=0.12 + 0.16 * math.ceil(names / UPLIFT_COLUMNS)))
+    figure, [[axes]] = lay_panels(PanelGrid(FULL, 1.4, top=0.12 + 0.16 * math.ceil(names / UPLIFT_COLUMNS)))
     if len(supports) <= MOST_NAMED:
         for number, support in enumerate(supports):
             # Two shades times four dashes: neighbours differ in the shade, and no two of eight curves are equal.
             shade, style = SHADES[number % 2], LINES[number // 2 % len(LINES)]
             name = f"support at {support.support_m:g} m"
-            axes.plot(support.time_s, support.uplift_mm, style, color=shade, linewidth=1.1, label=name)
+            axes.plot(support.time_s, support.uplift_mm, LineStyle(shade, 1.1, style), name)
     else:
         _draw_largest(axes, supports)
     limits = {(row.lower, row.upper) for row in criteria if row.quantity == "max_uplift_at_support_mm"}
     for lower, upper in sorted(limits, key=str):
         levels = [level for level in (lower, upper) if level is not None]
         if lower is not None and upper is not None:
-            axes.axhspan(lower, upper, color=LIMIT_FILL, zorder=0, label="limits of the maximum")
+            axes.axhspan(lower, upper, LIMIT_FILL, label="limits of the maximum")
         elif levels:
-            axes.axhline(levels[0], color=INK, linewidth=1.2, linestyle=LIMIT_LINE, label="limit of the maximum")
-    axes.set(xlabel="time [s]", ylabel="uplift [mm]")
-    add_legend(axes, UPLIFT_COLUMNS)
+            axes.axhline(levels[0], LineStyle(INK, 1.2, LIMIT_LINE), "limit of the maximum")
+    axes.name_axes("time [s]", "uplift [mm]")
+    axes.add_legend(UPLIFT_COLUMNS)
     return figure
 
 
-def _draw_largest(axes: Axes, supports: Sequence[UpliftTrace]) -> None:
+def _draw_largest(axes: Panel, supports: Sequence[UpliftTrace]) -> None:
     """All supports in grey with the largest uplift drawn over them: a name for each would fill the figure."""
     largest = max(supports, key=lambda support: max(support.uplift_mm))
     others = [support for support in supports if support is not largest]
     for support in others:
         name = "other supports" if support is others[0] else None
-        axes.plot(support.time_s, support.uplift_mm, color=SHADES[2], linewidth=0.8, label=name)
+        axes.plot(support.time_s, support.uplift_mm, LineStyle(SHADES[2], 0.8), name)
     name = f"largest: support at {largest.support_m:g} m"
-    axes.plot(largest.time_s, largest.uplift_mm, color=INK, linewidth=1.3, label=name)
+    axes.plot(largest.time_s, largest.uplift_mm, LineStyle(INK, 1.3), name)
 
 
 def select_reference_force(case: CaseResult, key: str) -> list[float]:

@@ -5,25 +5,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from pantocheck.conformance.core.figure_data import DrawnSymbol, DrawnView, LineShape
-from pantocheck.conformance.core.figure_style import (
-    FULL,
-    GREY,
-    HALF,
-    INK,
-    PALE,
-    draw_symbol,
-    marker_style,
-    render_svg,
-)
+from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PALE
+from pantocheck.conformance.core.panel_figure import Panel, PanelFigure, draw_symbol, write_svg
+from pantocheck.conformance.core.panel_marks import LineStyle
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.condition_sections import SPRINGLESS
-from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
+from pantocheck.conformance.pages.fixed_panels import PanelGrid, lay_panels
 from pantocheck.conformance.pages.words import format_plain
 from pantocheck.conformance.results.case_facts_format import StoredValue, StoredValues
 from pantocheck.conformance.results.results_format import CaseResult
@@ -34,41 +24,41 @@ MOST_LABELLED = 14
 """Largest number of supports whose positions have room below the axis; of more, every second one is written."""
 
 
-@render_svg
-def draw_line_shape(shape: LineShape, section: tuple[float, float] | None) -> Figure:
+@write_svg
+def draw_line_shape(shape: LineShape, section: tuple[float, float] | None) -> PanelFigure:
     """Draw a line at rest, with the analysis section [m] on a grey ground."""
     views = [("height [m]", shape.side)] + ([] if shape.plan is None else [("y [m]", shape.plan)])
-    figure, panels = add_panels(PanelGrid(FULL, 1.0, rows=len(views), right=0.2, between_rows=0.12))
+    figure, panels = lay_panels(PanelGrid(FULL, 1.0, rows=len(views), right=0.2, between_rows=0.12))
+    symbols = {symbol.name: _choose_marker(symbol) for symbol in shape.symbols}
+    supports = shape.supports_m
     for (axes,), (name, view) in zip(panels, views, strict=True):
         if section is not None:
-            axes.axvspan(*section, color=PALE, zorder=0)
-        _draw_view(axes, view, {symbol.name: symbol for symbol in shape.symbols})
-        supports = shape.supports_m
-        axes.set(xlim=(supports[0], supports[-1]), ylabel=name)
-        axes.margins(y=0.12)
-        axes.yaxis.set_label_coords(-0.065, 0.5)
-        axes.set_xticks(supports[:: 1 if len(supports) <= MOST_LABELLED else 2])
-        axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
-        axes.tick_params(labelbottom=axes is panels[-1][0])
-    panels[-1][0].set_xlabel("position along the line [m]")
-    handles = [Line2D([], [], label=symbol.name, markersize=3, **marker_style(symbol)) for symbol in shape.symbols]
-    columns = len(handles) or 1
-    panels[0][0].legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 1.0), ncols=columns, borderaxespad=0.1)
+            axes.axvspan(*section, PALE)
+        _draw_view(axes, view, symbols)
+        axes.x_scale.limits = (supports[0], supports[-1])
+        axes.x_scale.ticks = supports[:: 1 if len(supports) <= MOST_LABELLED else 2]
+        axes.x_scale.write = "{:g}".format
+        axes.x_scale.has_labels = axes is panels[-1][0]
+        axes.y_scale.margin, axes.y_name_left = 0.12, 0.065
+        axes.name_axes("position along the line [m]" if axes.x_scale.has_labels else "", name)
+    panels[0][0].add_legend(len(symbols) or 1, "right", list(symbols.items()))
     return figure
 
 
-def _draw_view(axes: Axes, view: DrawnView, symbols: Mapping[str, DrawnSymbol]) -> None:
+def _choose_marker(symbol: DrawnSymbol) -> LineStyle:
+    face = INK if symbol.filled else "white"
+    return LineStyle(INK, linestyle="", marker=symbol.marker, markersize=3, markerfacecolor=face)
+
+
+def _draw_view(axes: Panel, view: DrawnView, symbols: Mapping[str, LineStyle]) -> None:
     droppers = view.droppers
-    axes.vlines(droppers.x_m, droppers.lower_m, droppers.upper_m, color=GREY, linewidth=0.6)
+    axes.vlines(droppers.x_m, droppers.lower_m, droppers.upper_m, LineStyle(GREY, 0.6))
     for curve in view.curves:
-        axes.plot(curve.x_m, curve.y_m, color=INK, linewidth=WIRE_WIDTHS[curve.kind])
+        axes.plot(curve.x_m, curve.y_m, LineStyle(INK, WIRE_WIDTHS[curve.kind]))
     for point in view.points:
-        axes.plot(point.x_m, point.y_m, clip_on=False, markersize=3, **marker_style(symbols[point.symbol]))
+        axes.plot([point.x_m], [point.y_m], symbols[point.symbol], is_clipped=False)
         if point.text:
-            place = (point.x_m, point.y_m)
-            axes.annotate(
-                point.text, place, xytext=(0, -5), textcoords="offset points", fontsize=6, ha="center", va="top"
-            )
+            axes.text(point.x_m, point.y_m, point.text, 6.0, ha="center", va="top", shift=(0, -5))
 
 
 # Scheme of a pantograph that is a chain: base, masses, springs, dampers and contact, with their values.
@@ -106,16 +96,14 @@ class DrawnChain:
     """Mass [kg], spring [N/m] and damper [N s/m] of each strip on a spring, from front to rear."""
 
 
-@render_svg
-def draw_chain(chain: DrawnChain) -> Figure:
+@write_svg
+def draw_chain(chain: DrawnChain) -> PanelFigure:
     """Scheme of a chain; a spring or damper of 0 is left out."""
     levels = len(chain.masses) + bool(chain.strips)
     wire = BOTTOM + levels * (GAP + BOX) + GAP
-    figure = Figure(figsize=(HALF, wire + 0.1))
-    figure.set_layout_engine("none")
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set(xlim=(0, HALF), ylim=(0, wire + 0.1))
-    axes.set_axis_off()
+    figure = PanelFigure(HALF, wire + 0.1)
+    axes = figure.add_axes(0.0, 0.0, figure.width, figure.height)
+    axes.x_scale.limits, axes.y_scale.limits, axes.has_axes = (0, HALF), (0, figure.height), False
     _draw_base(axes)
     values = zip(chain.masses, chain.stiffness, chain.damping, chain.names, strict=True)
     for number, (mass, stiffness, damping, name) in enumerate(values):
@@ -126,18 +114,18 @@ def draw_chain(chain: DrawnChain) -> Figure:
             _draw_uplift_force(axes, below + GAP + BOX / 2)
     carrier = wire - 2 * GAP - BOX
     for edges, (mass, stiffness, damping) in zip(STRIP_EDGES, chain.strips, strict=False):
-        axes.plot([edges[0], (LEFT + RIGHT) / 2, edges[1]], 3 * [carrier], color=INK, linewidth=0.9)
+        axes.plot([edges[0], (LEFT + RIGHT) / 2, edges[1]], 3 * [carrier], LineStyle(INK, 0.9))
         places = (edges[0] + 0.12, stiffness), (edges[1] - 0.12, damping)
         _draw_mass(axes, edges, carrier, f"{format_plain(mass)} kg", *places)
     for left, right in STRIP_EDGES[: len(chain.strips)] or ((LEFT, RIGHT),):
         _draw_spring(axes, (left + right) / 2, wire - GAP, chain.contact)
-    axes.plot([0.7, 2.7], [wire, wire], color=INK, linewidth=1.8)
+    axes.plot([0.7, 2.7], [wire, wire], LineStyle(INK, 1.8))
     _write(axes, 2.75, wire, "contact wire", "left")
     return figure
 
 
 def _draw_mass(
-    axes: Axes,
+    axes: Panel,
     edges: tuple[float, float],
     below: float,
     text: str,
@@ -149,27 +137,27 @@ def _draw_mass(
         _draw_spring(axes, spring[0], below, f"{format_plain(spring[1])} N/m")
     _draw_damper(axes, *damper, below)
     bottom = below + GAP
-    axes.fill_between(edges, bottom, bottom + BOX, facecolor=PALE, linewidth=0)
+    axes.fill([edges[0], edges[1], edges[1], edges[0]], [bottom, bottom, bottom + BOX, bottom + BOX], PALE)
     draw_symbol(axes, "mass", (sum(edges) / 2, bottom), (edges[1] - edges[0]) / 2, BOX)
     _write(axes, sum(edges) / 2, bottom + BOX / 2, text, "center")
 
 
-def _draw_base(axes: Axes) -> None:
-    axes.plot([LEFT, RIGHT], [BOTTOM, BOTTOM], color=INK, linewidth=1.2)
+def _draw_base(axes: Panel) -> None:
+    axes.plot([LEFT, RIGHT], [BOTTOM, BOTTOM], LineStyle(INK, 1.2))
     for x in np.linspace(LEFT + 0.1, RIGHT, 10):
-        axes.plot([x - 0.08, x], [BOTTOM - 0.08, BOTTOM], color=GREY, linewidth=0.7)
+        axes.plot([x - 0.08, x], [BOTTOM - 0.08, BOTTOM], LineStyle(GREY, 0.7))
 
 
-def _draw_spring(axes: Axes, x: float, below: float, text: str) -> None:
+def _draw_spring(axes: Panel, x: float, below: float, text: str) -> None:
     """Spring from `below` upwards, with its stiffness on the left; a contact without a spring is a line."""
     if text == "constraint":
-        axes.plot([x, x], [below, below + GAP], color=INK, linewidth=0.9)
+        axes.plot([x, x], [below, below + GAP], LineStyle(INK, 0.9))
     else:
         draw_symbol(axes, "spring", (x, below), 0.06, GAP)
     _write(axes, x - 0.12, below + GAP / 2, text, "right")
 
 
-def _draw_damper(axes: Axes, x: float, damping: float, below: float) -> None:
+def _draw_damper(axes: Panel, x: float, damping: float, below: float) -> None:
     """Damper from `below` upwards, a piston in a cylinder, with its value on the right."""
     if damping == 0:
         return
@@ -177,16 +165,17 @@ def _draw_damper(axes: Axes, x: float, damping: float, below: float) -> None:
     _write(axes, x + 0.12, below + GAP / 2, f"{format_plain(damping)} N s/m", "left")
 
 
-def _draw_uplift_force(axes: Axes, middle: float) -> None:
+def _draw_uplift_force(axes: Panel, middle: float) -> None:
     x = RIGHT + 0.12
-    axes.plot([RIGHT, x], [middle, middle], color=INK, linewidth=0.7)
-    arrow = {"arrowstyle": "-|>", "color": INK, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 7}
-    axes.annotate("", xy=(x, middle + 0.2), xytext=(x, middle - 0.08), arrowprops=arrow)
+    axes.plot([RIGHT, x], [middle, middle], LineStyle(INK, 0.7))
+    top = middle + 0.2
+    axes.plot([x, x], [middle - 0.08, top - 0.03], LineStyle(INK, 1.0))
+    axes.fill([x - 0.02, x, x + 0.02], [top - 0.055, top, top - 0.055], INK, INK)
     _write(axes, x + 0.08, middle, "uplift force", "left")
 
 
-def _write(axes: Axes, x: float, y: float, text: str, side: str) -> None:
-    axes.text(x, y, text, ha=side, va="center", fontsize=7)
+def _write(axes: Panel, x: float, y: float, text: str, side: str) -> None:
+    axes.text(x, y, text, ha=side, va="center")
 
 
 def _shorten(name: str) -> str:
@@ -220,17 +209,16 @@ KNEE = np.array([-0.6, 0.6, 0.0, -0.5, 0.5]), np.array([-0.9, -0.45, 0.0, 0.0, 0
 """Base, knee and head of a sketched pantograph, in its width [-] and below the wire [m]."""
 
 
-@render_svg
-def draw_sketch(shape: LineShape, section: tuple[float, float] | None, pantographs: int) -> Figure:
+@write_svg
+def draw_sketch(shape: LineShape, section: tuple[float, float] | None, pantographs: int) -> PanelFigure:
     """Side view without scales, with the analysis section [m] on a grey ground and a number of pantographs below."""
-    figure = Figure(figsize=(FULL, 0.38))
-    figure.set_layout_engine("none")
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set_axis_off()
+    figure = PanelFigure(FULL, 0.38)
+    axes = figure.add_axes(0.0, 0.0, figure.width, figure.height)
+    axes.has_axes = False
     start, end = shape.supports_m[0], shape.supports_m[-1]
     low, high = section or (start, end)
     if section is not None:
-        axes.axvspan(low, high, color=PALE, zorder=0)
+        axes.axvspan(low, high, PALE)
     _draw_view(axes, shape.side.model_copy(update={"points": []}), {})
     wire = [curve for curve in shape.side.curves if curve.kind == "contact_wire"]
     x, y = [place for curve in wire for place in curve.x_m], [height for curve in wire for height in curve.y_m]
@@ -238,9 +226,8 @@ def draw_sketch(shape: LineShape, section: tuple[float, float] | None, pantograp
     for number in range(pantographs if wire else 0):
         place = (low + high) / 2 - 3 * size * number
         head = float(np.interp(place, x, y))
-        axes.plot(place + size * KNEE[0], head + KNEE[1], color=INK, linewidth=1.0)
-    axes.set(xlim=(start, end))
-    axes.margins(y=0.08)
+        axes.plot(place + size * KNEE[0], head + KNEE[1], LineStyle(INK, 1.0))
+    axes.x_scale.limits, axes.y_scale.margin = (start, end), 0.08
     return figure
 
 

@@ -1,12 +1,9 @@
 """Pages on a pantograph: measured responses beside its model, and the fit of a chain to them."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, MultipleLocator, NullFormatter, StrMethodFormatter
 
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_style import (
@@ -17,6 +14,7 @@ from pantocheck.conformance.core.figure_style import (
     SHADES,
     add_legend,
     label_decades,
+    new_figure,
     render_svg,
 )
 from pantocheck.conformance.pages import document as doc
@@ -31,6 +29,10 @@ from pantocheck.conformance.results.comparison_format import (
 from pantocheck.conformance.results.pantograph_fit_format import ChainParameter, PantographFit
 from pantocheck.conformance.results.supported_frequency import UNKNOWN_FREQUENCY
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 Limits = Sequence[Criterion]
 
 DRAWN_ROWS = 400
@@ -40,9 +42,11 @@ FREQUENCY_TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200)
 
 
 @render_svg
-def draw_response(response: ComparedResponse, limits: Limits) -> Figure:
+def draw_response(response: ComparedResponse, limits: Limits) -> "Figure":
     """Modulus and phase of measurement and model over the frequency; below, deviations and limits by row and band."""
-    figure = Figure(figsize=(FULL, 4.6))
+    from matplotlib.ticker import MultipleLocator
+
+    figure = new_figure(FULL, 4.6)
     modulus, phase, deviation = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
     measured, model = response.measured, response.model
     rows = select_drawn_rows(measured.frequency_Hz)
@@ -79,7 +83,7 @@ def _error_bar(response: ComparedResponse, key: str, rows: list[int]) -> Any:
     return (np.array(response.measured.modulus) * np.array(response.modulus_uncertainty_pct) / 100)[rows]
 
 
-def _draw_deviations(axes: Axes, response: ComparedResponse, limits: Limits, rows: list[int]) -> None:
+def _draw_deviations(axes: "Axes", response: ComparedResponse, limits: Limits, rows: list[int]) -> None:
     """Deviation of the modulus at the rows, complex deviation of each band as a step, limits as dashed lines."""
     points = (np.array(series)[rows] for series in (response.measured.frequency_Hz, response.modulus_deviation_pct))
     axes.axhline(0.0, color=GREY, linewidth=0.6)
@@ -99,24 +103,28 @@ def _draw_deviations(axes: Axes, response: ComparedResponse, limits: Limits, row
     add_legend(axes)
 
 
-def _label_moduli(axes: Axes) -> None:
+def _label_moduli(axes: "Axes") -> None:
     """A logarithmic modulus axis: plain numbers over two decades or less, otherwise powers of ten."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
     axes.set_yscale("log")
     low, high = axes.get_ylim()
     if high / low > 100:
         label_decades(axes.yaxis)
         return
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.yaxis.set_major_formatter("{x:g}")
     axes.yaxis.set_minor_formatter(NullFormatter())
 
 
-def _label_frequencies(axes: Axes, frequency: Sequence[float]) -> None:
+def _label_frequencies(axes: "Axes", frequency: Sequence[float]) -> None:
     """A logarithmic frequency axis with plain numbers."""
+    from matplotlib.ticker import NullFormatter
+
     axes.set_xscale("log")
     axes.set_xlim(frequency[0], frequency[-1])
     axes.set_xticks([tick for tick in FREQUENCY_TICKS if frequency[0] <= tick <= frequency[-1]])
-    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_major_formatter("{x:g}")
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 

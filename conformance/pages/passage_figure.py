@@ -4,12 +4,13 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from pantocheck.conformance.core.figure_data import LineShape
-from pantocheck.conformance.core.figure_style import FULL, GREY, INK, PALE, SHADES, render_svg
+from pantocheck.conformance.core.figure_style import FULL, GREY, INK, PALE, SHADES
+from pantocheck.conformance.core.panel_figure import PanelFigure, write_svg
+from pantocheck.conformance.core.panel_marks import LineStyle
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
+from pantocheck.conformance.pages.fixed_panels import PanelGrid, lay_panels
 from pantocheck.conformance.pages.line_figure import WIRE_WIDTHS
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.results.motion_format import PassageMotion
@@ -56,26 +57,25 @@ def _find_smallest(motion: PassageMotion, section: tuple[float, float]) -> tuple
     return found
 
 
-@render_svg
-def draw_instant(motion: PassageMotion, shape: LineShape, section: tuple[float, float], frame: int) -> Figure:
+@write_svg
+def draw_instant(motion: PassageMotion, shape: LineShape, section: tuple[float, float], frame: int) -> PanelFigure:
     """Wires in one frame over their shape at rest, and the places of the pantographs."""
-    figure, [[axes]] = add_panels(PanelGrid(FULL, 1.1, right=0.2))
-    axes.axvspan(*section, color=PALE, zorder=0)
+    figure, [[axes]] = lay_panels(PanelGrid(FULL, 1.1, right=0.2))
+    axes.axvspan(*section, PALE)
     droppers = shape.side.droppers
-    axes.vlines(droppers.x_m, droppers.lower_m, droppers.upper_m, color=GREY, linewidth=0.5)
+    axes.vlines(droppers.x_m, droppers.lower_m, droppers.upper_m, LineStyle(GREY, 0.5))
     for wire in motion.wires:
         curve, x = shape.side.curves[wire.curve], np.array(wire.x_m)
         rise = wire.rise_mm.decode()[frame] / 1000
-        axes.plot(curve.x_m, curve.y_m, color=SHADES[2], linewidth=0.6)
+        axes.plot(curve.x_m, curve.y_m, LineStyle(SHADES[2], 0.6))
         height = np.interp(x, curve.x_m, curve.y_m) + ENLARGED * rise
-        axes.plot(x, height, color=INK, linewidth=WIRE_WIDTHS[curve.kind])
-    low = axes.get_ylim()[0]
+        axes.plot(x, height, LineStyle(INK, WIRE_WIDTHS[curve.kind]))
+    low = axes.y_scale.find_limits()[0]
     for owner, part in enumerate(motion.pantographs, 1):
         place = part.start_m + motion.speed_m_s * motion.step_s * frame
         if shape.supports_m[0] <= place <= shape.supports_m[-1]:
-            axes.plot([place], [low], "^", color=INK, clip_on=False, markersize=6)
-            axes.annotate(str(owner), (place, low), xytext=(6, 2), textcoords="offset points", fontsize=7)
-    axes.set(
-        xlim=(shape.supports_m[0], shape.supports_m[-1]), xlabel="position along the line [m]", ylabel="height [m]"
-    )
+            axes.plot([place], [low], LineStyle(INK, linestyle="", marker="^", markersize=6), is_clipped=False)
+            axes.text(place, low, str(owner), shift=(6, 2))
+    axes.x_scale.limits = (shape.supports_m[0], shape.supports_m[-1])
+    axes.name_axes("position along the line [m]", "height [m]")
     return figure

@@ -3,22 +3,15 @@
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache
-from pathlib import Path
 from typing import Any
 
-import matplotlib
-from matplotlib.ft2font import FT2Font
-
 from pantocheck.conformance.core.extras import refuse_missing_package
+from pantocheck.conformance.core.font_file import find_fonts, replace_missing_glyphs
 from pantocheck.conformance.core.look import read_look
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.document import NAME, Document, encode_attachment, to_plain
 from pantocheck.conformance.pages.translation import collect_marked, translate, translate_document, translate_tree
 from pantocheck.conformance.pages.words import bind_page_units, change_texts, read_words
-
-# Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
-FONTS = Path(matplotlib.get_data_path(), "fonts", "ttf")
 
 
 def render_pdf(document: Document) -> bytes:
@@ -56,19 +49,8 @@ def typeset(files: dict[str, bytes], **options: Any) -> bytes:
         import typst
     # typst takes a dictionary of files, which its type hints do not know.
     sources: Any = files
-    return bytes(typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))
-
-
-@cache
-def _glyphs() -> frozenset[int]:
-    return frozenset(FT2Font(str(FONTS / "DejaVuSans.ttf")).get_charmap())
-
-
-def replace_missing_glyphs(text: str) -> str:
-    """A text with every character that has no glyph replaced by U+FFFD."""
-    if text.isascii():  # most texts, and all figures
-        return text
-    return "".join(c if c.isascii() or ord(c) in _glyphs() else "\N{REPLACEMENT CHARACTER}" for c in text)
+    # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
+    return bytes(typst.compile(sources, ignore_system_fonts=True, font_paths=[str(find_fonts())], **options))
 
 
 # Appearance of a visible signature, typeset by Typst as a page of its own.

@@ -3,13 +3,21 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from pantocheck.conformance.core.figure_data import Spectrum
-from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PlotStyle, add_legend, render_svg
+from pantocheck.conformance.core.figure_style import (
+    FULL,
+    GREY,
+    HALF,
+    INK,
+    PlotStyle,
+    add_legend,
+    new_figure,
+    render_svg,
+)
 from pantocheck.conformance.core.results_part import select_single
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import clean_model
@@ -44,6 +52,10 @@ from pantocheck.conformance.results.supported_frequency import (
     is_supported,
     reaches,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Supported = Mapping[str, Sequence[SupportedFrequency]]
 """Highest frequencies that the parts of the model of each subject support, by its name."""
@@ -281,9 +293,9 @@ SPAN_STATISTICS: dict[str, Callable[[ForceStatistics], float]] = {
 
 
 @render_svg
-def draw_overlay(pantograph: MeasuredPantograph) -> Figure:
+def draw_overlay(pantograph: MeasuredPantograph) -> "Figure":
     """Filtered forces of one pantograph in both runs; below, simulated minus measured force."""
-    figure = Figure(figsize=(FULL, 3.0))
+    figure = new_figure(FULL, 3.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     position = pantograph.position_m
     upper.plot(position, pantograph.simulated_N, **SIMULATED)
@@ -300,9 +312,9 @@ def draw_overlay(pantograph: MeasuredPantograph) -> Figure:
 
 
 @render_svg
-def draw_run_spectra(pantograph: MeasuredPantograph) -> Figure:
+def draw_run_spectra(pantograph: MeasuredPantograph) -> "Figure":
     """Amplitude spectra of the unfiltered forces in both runs; below, simulated minus measured amplitude."""
-    figure = Figure(figsize=(HALF, 3.0))
+    figure = new_figure(HALF, 3.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     simulated, measured = pantograph.simulated_spectrum, pantograph.measured_spectrum
     upper.plot(simulated.frequency_Hz, simulated.amplitude_N, **SIMULATED | {"linewidth": 0.9})
@@ -318,9 +330,9 @@ def draw_run_spectra(pantograph: MeasuredPantograph) -> Figure:
 
 
 @render_svg
-def draw_spans(pantograph: MeasuredPantograph) -> Figure:
+def draw_spans(pantograph: MeasuredPantograph) -> "Figure":
     """Mean and standard deviation of the filtered force span by span in both runs."""
-    figure = Figure(figsize=(HALF, 3.0))
+    figure = new_figure(HALF, 3.0)
     panels = figure.subplots(2, 1, sharex=True)
     for axes, (label, select) in zip(panels, SPAN_STATISTICS.items(), strict=True):
         _draw_span_values(axes, pantograph.spans, select)
@@ -350,7 +362,9 @@ def list_span_ends(pantograph: MeasuredPantograph) -> list[float]:
     return sorted({place for span in pantograph.spans for place in (span.start_m, span.end_m)})
 
 
-def _draw_span_values(axes: Axes, spans: Sequence[SpanStatistics], select: Callable[[ForceStatistics], float]) -> None:
+def _draw_span_values(
+    axes: "Axes", spans: Sequence[SpanStatistics], select: Callable[[ForceStatistics], float]
+) -> None:
     edges = [spans[0].start_m, *(span.end_m for span in spans)]
     for runs, style in (([span.simulated for span in spans], SIMULATED), ([span.measured for span in spans], MEASURED)):
         values = [select(run) for run in runs]

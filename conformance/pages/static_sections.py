@@ -1,20 +1,33 @@
 """Figure of static values along a line: measurement, model and their difference."""
 
-import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
-from pantocheck.conformance.core.figure_style import FULL, GREY, INK, LIMIT_FILL, PALE, add_legend, render_svg
+import numpy as np
+
+from pantocheck.conformance.core.figure_style import (
+    FULL,
+    GREY,
+    INK,
+    LIMIT_FILL,
+    PALE,
+    add_legend,
+    new_figure,
+    render_svg,
+)
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import PageKind
 from pantocheck.conformance.pages.words import format_plain, format_signed, format_value
 from pantocheck.conformance.results.comparison_format import ComparedValues, SpanDifferences, StaticComparison
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 
 @render_svg
 def draw_static_values(
     values: ComparedValues, spans: tuple[SpanDifferences, ...], tolerance: float | None, section: tuple[float, float]
-) -> Figure:
+) -> "Figure":
     """Measured values and those of the model over neighbouring spans; below, their difference.
 
     Args:
@@ -26,7 +39,7 @@ def draw_static_values(
     start, end = spans[0].start_m, spans[-1].end_m
     position = np.array(values.position_m)
     shown = (position >= start) & (position <= end)
-    figure = Figure(figsize=(FULL, 2.8))
+    figure = new_figure(FULL, 2.8)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     _draw_model(upper, values, spans)
     outliers = shown & np.isin(values.row, values.outlier_rows)
@@ -48,7 +61,7 @@ def draw_static_values(
     return figure
 
 
-def _draw_model(axes: Axes, values: ComparedValues, spans: tuple[SpanDifferences, ...]) -> None:
+def _draw_model(axes: "Axes", values: ComparedValues, spans: tuple[SpanDifferences, ...]) -> None:
     """Curve of the model, broken at spans without measured values."""
     x, curve = np.array(values.curve_position_m), np.array(values.curve)
     label: str | None = "model"
@@ -59,7 +72,7 @@ def _draw_model(axes: Axes, values: ComparedValues, spans: tuple[SpanDifferences
             label = None
 
 
-def _mark_spans(axes: Axes, spans: tuple[SpanDifferences, ...], section: tuple[float, float]) -> None:
+def _mark_spans(axes: "Axes", spans: tuple[SpanDifferences, ...], section: tuple[float, float]) -> None:
     """Lines at the supports, numbers of the spans along the lower edge, grey outside the evaluated section."""
     for span in spans:
         axes.axvline(span.start_m, color=GREY, linewidth=0.6, linestyle=":")

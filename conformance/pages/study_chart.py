@@ -2,11 +2,9 @@
 
 from collections.abc import Iterable
 from textwrap import fill
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Chart, Mark, Series
@@ -23,9 +21,14 @@ from pantocheck.conformance.core.figure_style import (
     add_box,
     add_legend,
     label_decades,
+    new_figure,
     render_svg,
 )
 from pantocheck.conformance.results.campaign_format import ValueMap
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 MARKERS = "os^Dv"
 HATCHES = ("", "", "////", "....")
@@ -46,9 +49,9 @@ def find_common_range(charts: Iterable[Chart]) -> tuple[float, float]:
 
 
 @render_svg
-def draw_chart(data: Chart, y_range: tuple[float, float] | None = None) -> Figure:
+def draw_chart(data: Chart, y_range: tuple[float, float] | None = None) -> "Figure":
     """A chart of a study: one entry of a case's `charts`; `y_range` is the scale that it shares with others."""
-    figure = Figure(figsize=(FULL, 2.3) if data.wide else (HALF, 2.1))
+    figure = new_figure(FULL, 2.3) if data.wide else new_figure(HALF, 2.1)
     axes = figure.subplots()
     axes.set(xscale=data.x_scale, yscale=data.y_scale, xlabel=data.x_label, ylabel=data.y_label)
     for axis, scale in ((axes.xaxis, data.x_scale), (axes.yaxis, data.y_scale)):
@@ -80,7 +83,7 @@ def draw_chart(data: Chart, y_range: tuple[float, float] | None = None) -> Figur
     return figure
 
 
-def _draw_line(axes: Axes, series: Series, number: int) -> None:
+def _draw_line(axes: "Axes", series: Series, number: int) -> None:
     style, shade = LINES[number % len(LINES)], SHADES[number % 3]
     axes.plot(series.x, series.y, style, color=shade, linewidth=1.1, label=series.label)
     if series.error is not None:
@@ -88,7 +91,7 @@ def _draw_line(axes: Axes, series: Series, number: int) -> None:
         axes.fill_between(series.x, y - width, y + width, color=shade, alpha=BAND_OPACITY, linewidth=0)
 
 
-def _draw_points(axes: Axes, series: Series, number: int) -> None:
+def _draw_points(axes: "Axes", series: Series, number: int) -> None:
     axes.errorbar(
         series.x,
         series.y,
@@ -103,12 +106,12 @@ def _draw_points(axes: Axes, series: Series, number: int) -> None:
     axes.margins(x=0.03)
 
 
-def _draw_crosses(axes: Axes, series: Series, number: int) -> None:
+def _draw_crosses(axes: "Axes", series: Series, number: int) -> None:
     """Coloured crosses over points of other series."""
     axes.plot(series.x, series.y, "x", color=CROSS, markersize=8, label=series.label, zorder=3)
 
 
-def _draw_boxes(axes: Axes, series: Series, number: int) -> None:
+def _draw_boxes(axes: "Axes", series: Series, number: int) -> None:
     x, y = np.array(series.x), np.array(series.y)
     for place in np.unique(x):
         values = y[x == place]
@@ -122,7 +125,7 @@ STYLES = {"line": _draw_line, "points": _draw_points, "crosses": _draw_crosses, 
 """Drawing of a series by its style; bars and bands are drawn together."""
 
 
-def _draw_bars(axes: Axes, series: Series, number: int, count: int) -> None:
+def _draw_bars(axes: "Axes", series: Series, number: int, count: int) -> None:
     width = 0.8 / count
     places = np.array(series.x) + width * (number - (count - 1) / 2)
     axes.bar(
@@ -137,7 +140,7 @@ def _draw_bars(axes: Axes, series: Series, number: int, count: int) -> None:
     )
 
 
-def _draw_mark(axes: Axes, mark: Mark) -> None:
+def _draw_mark(axes: "Axes", mark: Mark) -> None:
     along = mark.axis == "x"
     if mark.high is not None:
         (axes.axvspan if along else axes.axhspan)(
@@ -158,10 +161,10 @@ TICK_NAME_WIDTH = 34
 
 
 @render_svg
-def draw_tornado(data: Chart) -> Figure:
+def draw_tornado(data: Chart) -> "Figure":
     """A chart of campaign.json whose series have the style `tornado`; the first tick is at the top."""
     ticks = data.ticks or []
-    figure = Figure(figsize=(FULL, 0.9 + 0.32 * len(ticks)))
+    figure = new_figure(FULL, 0.9 + 0.32 * len(ticks))
     axes = figure.subplots()
     for series, colour in zip(data.series, TORNADO_FILLS, strict=True):
         axes.barh(series.x, series.y, 0.7, color=colour, edgecolor=INK, linewidth=0.5, label=series.label)
@@ -180,9 +183,9 @@ MAP_COLOURS = "Greys"
 
 
 @render_svg
-def draw_map(data: ValueMap) -> Figure:
+def draw_map(data: ValueMap) -> "Figure":
     """A map of campaign.json: one cell per run, white where there is none; dashed: the limit between the cells."""
-    figure = Figure(figsize=(FULL, 3.2))
+    figure = new_figure(FULL, 3.2)
     axes = figure.subplots()
     x, y = np.array(data.x), np.array(data.y)
     values = np.ma.masked_invalid(np.array(data.values, float))
@@ -195,7 +198,7 @@ def draw_map(data: ValueMap) -> Figure:
     return figure
 
 
-def _draw_limit(axes: Axes, x: RealArray, y: RealArray, values: Any, bound: float) -> None:
+def _draw_limit(axes: "Axes", x: RealArray, y: RealArray, values: Any, bound: float) -> None:
     """Contour of a limit, if values lie on both sides of it."""
     if values.min() < bound < values.max():
         lines = axes.contour(x, y, values, levels=[bound], colors=INK, linewidths=1.4, linestyles=[LIMIT_LINE])

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.core.figure_style import FULL, HALF, draw_symbol, render_svg
+from pantocheck.conformance.core.figure_style import FULL, HALF, render_svg
 from pantocheck.conformance.core.look import read_look
+from pantocheck.conformance.core.panel_figure import PanelFigure, draw_symbol, write_svg
 
 
 def write_look_pictures(folder: Path) -> None:
@@ -45,14 +46,15 @@ def draw_sizes() -> Any:
     return figure
 
 
-@render_svg
-def draw_symbols() -> Any:
+@write_svg
+def draw_symbols() -> PanelFigure:
     """Symbols of mass, spring and damper."""
-    figure, [axes] = _start_figure(HALF, 1.0, 1)
+    figure = PanelFigure(HALF, 1.0)
+    axes = figure.add_axes(0.0, 0.0, HALF, 1.0)
+    axes.x_scale.limits, axes.y_scale.limits, axes.has_axes = (-0.5, 2.5), (0, 1.05), False
     for number, name in enumerate(read_look()["symbol"]):
         draw_symbol(axes, name, (number, 0.3), 0.3 if name == "mass" else 0.1, 0.7)
-        axes.text(number, 0.05, name, ha="center", fontsize=8)
-    axes.set(xlim=(-0.5, 2.5), ylim=(0, 1.05))
+        axes.text(number, 0.05, name, 8.0, ha="center")
     return figure
 
 

@@ -100,9 +100,9 @@ def test_spectrum_is_grey_above_the_frequency_alone(passing: dict[str, Any]) -> 
     case = CaseResult.model_validate(passing["cases"][0])
     for frequency, patches in ((35.0, 1), (None, 0), (60.0, 0)):
         axes = draw_spectrum.__wrapped__(case.traces["1"], case.quantities["1"], frequency).axes[0]
-        above = [patch for patch in axes.patches if patch.get_x() == frequency]
+        above = [area for area in axes.areas if area.x[0] == frequency]
         assert len(above) == patches
-        assert all(patch.get_x() + patch.get_width() == 50 for patch in above)
+        assert all(max(area.x) == 50 for area in above)
 
 
 def test_comparison_greys_the_values_of_the_subject_that_does_not_support_them() -> None:

@@ -60,8 +60,8 @@ def test_uplift_force_acts_on_the_stated_mass() -> None:
     heights = []
     for lifted in (0, 1):
         chain = DrawnChain((6.0, 5.5), (100.0, 7000.0), (60.0, 0.0), ("frame", "head"), lifted, "50000 N/m")
-        [text] = [text for text in draw_chain.__wrapped__(chain).axes[0].texts if text.get_text() == "uplift force"]
-        heights.append(72 * float(text.get_position()[1]))
+        [text] = [text for text in draw_chain.__wrapped__(chain).axes[0].texts if text.text == "uplift force"]
+        heights.append(72 * text.y)
     assert abs(heights[1] - heights[0] - 44.64) < 1e-3
 
 

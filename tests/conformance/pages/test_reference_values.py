@@ -3,10 +3,10 @@
 from typing import Any
 
 import pytest
-from matplotlib.figure import Figure
 
 from helpers.shown_page import print_certificate, show_certificate
 from pantocheck.conformance.core.figure_data import Traces
+from pantocheck.conformance.core.panel_figure import PanelFigure
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_force
 from pantocheck.conformance.pages.criteria_table import criteria_blocks, find_reference, reference_note
@@ -54,10 +54,9 @@ def test_items_and_forces_of_the_reference_are_found(case: dict[str, Any]) -> No
     trace, force = Traces.model_validate(case["traces"]["1"]), case["reference"]["force_20_N"]["1"]
     for reference, count in ((force, 1), ([], 0)):
         figure = draw_force.__wrapped__(trace, reference)  # type: ignore[attr-defined]
-        assert isinstance(figure, Figure)
-        lines = {line.get_label(): line for line in figure.axes[0].lines}
-        assert len([label for label in lines if label.startswith("reference")]) == count
-    labels = [line.get_label() for line in figure.axes[0].lines]
+        assert isinstance(figure, PanelFigure)
+        labels = [label for label, _ in figure.axes[0].legend]
+        assert len([label for label in labels if label.startswith("reference")]) == count
     assert labels[:2] == ["unfiltered", "0–20 Hz"]
 
 

@@ -4,6 +4,7 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
+import matplotlib
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -39,8 +40,13 @@ def axes_of(**parts: Any) -> Axes:
 
 
 @pytest.mark.usefixtures("fresh_figures")
-def test_chart_is_deterministic() -> None:
-    assert draw() == draw()
+def test_chart_is_deterministic_whatever_the_settings_of_matplotlib() -> None:
+    expected = draw()
+    assert draw() == expected
+    with matplotlib.rc_context({"font.family": "monospace", "axes.grid": False, "svg.fonttype": "path"}):
+        assert draw() == expected
+        assert matplotlib.rcParams["svg.fonttype"] == "path"
+    assert ">x [s]</text>" in expected
 
 
 @pytest.mark.parametrize(
