@@ -63,14 +63,6 @@ class EntryKernel(LateObject):
         result = call_core(library, function.__name__, arguments)
         return int(result) if function.__annotations__["return"] is int else result
 
-    def bind(self, *first: Any) -> Callable[..., Any]:
-        """Function of the other arguments; the core in C receives the first ones packed once.
-
-        The arrays of the first arguments must live as long as the function is called.
-        """
-        core = choose_core()
-        return partial(self, *first if core.library is None else map(pack_argument, first))
-
 
 class PlainKernel(LateObject):
     """Function that numba compiles for its callers; called from Python, it runs as Python."""
@@ -80,6 +72,14 @@ class PlainKernel(LateObject):
     def __call__(self, *arguments: Any) -> Any:
         """Run the function in Python."""
         return self.__wrapped__(*arguments)
+
+
+def bind_arrays(entry: Callable[..., Any], *first: Any) -> Callable[..., Any]:
+    """Function of the other arguments of an entry kernel; the core in C receives the first ones packed once.
+
+    The arrays of the first arguments must live as long as the function is called.
+    """
+    return partial(entry, *first if choose_core().library is None else map(pack_argument, first))
 
 
 def _late(kind: type[LateObject], function: Function, **options: Any) -> Any:

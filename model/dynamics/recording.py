@@ -13,7 +13,7 @@ from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import active_window
 from pantocheck.model.dynamics.extents import active_run
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace, build_workspace
-from pantocheck.model.dynamics.kernel_compilation import entry_kernel, kernel
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays, entry_kernel, kernel
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.passage import FrameRequest, Frames
@@ -85,7 +85,7 @@ def simulate_steps(
         DidNotConverge: The forces of a time step did not converge.
     """
     work = build_workspace(kernel, train)
-    advance = _advance.bind(kernel, motion, train, work)
+    advance = bind_arrays(_advance, kernel, motion, train, work)
     stops = {*range(BLOCK, load.size, BLOCK), load.size, *(frames.request.steps if frames else ())}
     for first, end in pairwise((0, *sorted(stops))):
         block = slice(first, end)
