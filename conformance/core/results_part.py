@@ -26,6 +26,11 @@ def select_single(value: Number | None) -> float | None:
     return None if isinstance(value, list) else value
 
 
+def is_empty(value: object) -> bool:
+    """Whether a list has no item: its key is missing in the file then."""
+    return value == []
+
+
 Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pantograph, 0: the line")]
 
 

@@ -45,6 +45,10 @@ class FmuTable(InputTable):
     """Input of the height of the base, which is 0 on a level track."""
     parameters: Annotated[dict[VariableName, float], Field(max_length=1000), NO_FEATURE] = Field(default_factory=dict)
     """Values of parameters, in the units of the FMU."""
+    outputs: Annotated[
+        tuple[VariableName, ...], Field(strict=False, max_length=100, exclude_if=is_absent), NO_FEATURE
+    ] = ()
+    """Further outputs and local variables that are recorded, in the units of the FMU."""
     is_linear: Annotated[bool, NO_FEATURE] = True
     """false: the motion differs from that of the linear model of this file, as with a controller or friction. The
     motion of a record is not confirmed then.

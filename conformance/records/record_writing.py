@@ -28,6 +28,7 @@ def write_record(
     system: dict[str, str] | None = None,
     run: dict[str, float | None] | None = None,
     further: Mapping[str, object] | None = None,
+    outputs: Mapping[str, RealArray] | None = None,
 ) -> Path:
     """Write a record as CSV or HDF5, by the suffix of the path, with a sidecar beside it.
 
@@ -38,13 +39,15 @@ def write_record(
         system: `name` and `version` of the simulator or measuring system.
         run: Table `run` of the sidecar; keys with None are left out.
         further: Further keys of the sidecar, such as `case_digest` and `line`; keys with None are left out.
+        outputs: Further columns of the table by their names, (n,) each, such as outputs of an FMU.
 
     Raises:
         InputError: The suffix is not that of a record, a file cannot be written, or the sidecar would overwrite another
             file.
     """
     check_record_path(path)
-    produce_atomically(path, partial(_write_table, record, find_table_format(path, tuple(RECORD_WRITERS))))
+    table_format = find_table_format(path, tuple(RECORD_WRITERS))
+    produce_atomically(path, partial(_write_table, record, outputs or {}, table_format))
     sidecar: dict[str, Any] = {
         "schema": RECORD_SCHEMA,
         "case": case,
@@ -83,7 +86,7 @@ def check_record_path(path: Path) -> None:
         )
 
 
-def _write_table(record: Record, table_format: TableFormat, path: Path) -> None:
+def _write_table(record: Record, outputs: Mapping[str, RealArray], table_format: TableFormat, path: Path) -> None:
     """Write the channels of a record in a format, whatever the suffix of the path."""
     channels = {
         "time": record.time,
@@ -94,19 +97,22 @@ def _write_table(record: Record, table_format: TableFormat, path: Path) -> None:
         "uplift": record.support_uplift,
     }
     rows = {CHANNELS[name]: values for name, values in channels.items() if values is not None}
-    RECORD_WRITERS[table_format](path, rows)
+    RECORD_WRITERS[table_format](path, rows, outputs)
 
 
-def _write_csv(path: Path, rows: Rows) -> None:
+def _write_csv(path: Path, rows: Rows, outputs: Mapping[str, RealArray]) -> None:
     names = [channel.column(i + 1) for channel, values in rows.items() for i in range(len(np.atleast_2d(values)))]
-    write_csv_table(path, names, np.vstack(list(rows.values())).T, 12)
+    write_csv_table(path, [*names, *outputs], np.vstack([*rows.values(), *outputs.values()]).T, 12)
 
 
-def _write_hdf5(path: Path, rows: Rows) -> None:
+def _write_hdf5(path: Path, rows: Rows, outputs: Mapping[str, RealArray]) -> None:
     from pantocheck.conformance.core.hdf5_table import write_hdf5_table
 
-    write_hdf5_table(path, {}, {channel.key: values for channel, values in rows.items()})
+    write_hdf5_table(path, {}, {channel.key: values for channel, values in rows.items()} | dict(outputs))
 
 
-RECORD_WRITERS: dict[TableFormat, Callable[[Path, Rows], None]] = {CSV: _write_csv, HDF5: _write_hdf5}
+RECORD_WRITERS: dict[TableFormat, Callable[[Path, Rows, Mapping[str, RealArray]], None]] = {
+    CSV: _write_csv,
+    HDF5: _write_hdf5,
+}
 """Formats in which records are written, with their writers."""

@@ -25,6 +25,7 @@ from pantocheck.conformance.records.record import (
     CHANNELS,
     LARGEST_NUMBER,
     MAX_SAMPLES,
+    OUTPUT_COLUMN,
     ChannelRows,
     RecordColumn,
     find_column,
@@ -100,6 +101,8 @@ def _read_own_rows(
         if column.label in further:
             continue
         try:
+            if (column.name or "").startswith(OUTPUT_COLUMN):
+                continue
             meaning = _find_meaning(column, sidecar, where)
         except InputError as error:
             errors.append(error)

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from pantocheck.conformance.core.check_row import CheckRow
 from pantocheck.conformance.core.figure_data import Chart, Spectrum, check_lengths
-from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart
+from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart, is_empty
 from pantocheck.conformance.core.trust import StudiedPart, Trust
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.quantities.filters import Filter
@@ -290,6 +290,16 @@ class ReferenceValues(ResultsPart):
     """Filtered force at the positions of `traces` of the case, which has the same pantograph."""
 
 
+class FmuOutput(ResultsPart):
+    """Output of an FMU in a passage."""
+
+    name: str
+    unit: str
+    """As the FMU states it; empty: not stated."""
+    lowest: FiniteNumber
+    highest: FiniteNumber
+
+
 class FmuRun(ResultsPart):
     """FMU that moved a pantograph in a run, and the accuracy of its coupling with the line."""
 
@@ -312,14 +322,18 @@ class FmuRun(ResultsPart):
     """Sum of the absolute work of all steps between line and FMU."""
     largest_difference_mm: FiniteNumber
     """Largest difference of the heights of a strip in line and FMU at the end of a step."""
+    outputs: Annotated[list[FmuOutput], Field(exclude_if=is_empty)] = []
+    """Recorded outputs; missing: none."""
 
     @property
     def description(self) -> str:
         """Sentences for the reader of a report."""
         way = "steps repeated until both agree" if self.can_repeat else "explicit steps, without state rollback"
         tool = f" by {self.tool}" if self.tool else ""
+        outputs = (f" {row.name}: {row.lowest:.4g} to {row.highest:.4g} {row.unit}".rstrip() for row in self.outputs)
         return (
             f"Pantograph {self.pantograph} was moved by the FMU {self.file}: {self.model}{tool}, {self.interface},"
             f" SHA-256 {self.sha256}. Coupling: {way}; it made {self.energy_J:.2g} J where {self.exchanged_J:.3g} J"
             f" were exchanged, and heights differ by {self.largest_difference_mm:.1g} mm at most."
+            + ("" if not self.outputs else f" Outputs:{';'.join(outputs)}.")
         )

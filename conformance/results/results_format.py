@@ -22,7 +22,7 @@ from pantocheck.conformance.core.figure_data import (
 )
 from pantocheck.conformance.core.findings import FindingCounts
 from pantocheck.conformance.core.packed_samples import SignalSamples
-from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart, Suite
+from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart, Suite, is_empty
 from pantocheck.conformance.core.sourced_table import (
     NonNegative,
     Problems,
@@ -164,11 +164,6 @@ Quantities = dict[Owner, dict[str, Number]]
 
 UncertaintyComponents = dict[Owner, dict[str, dict[ComponentName, Number]]]
 """Half-widths by owner, name of the quantity and component."""
-
-
-def is_empty(value: object) -> bool:
-    """Whether a list has no item: its key is missing in the file then."""
-    return value == []
 
 
 class CaseResult(ResultsPart):

@@ -2,9 +2,9 @@
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import count
 
 import numpy as np
@@ -15,7 +15,7 @@ from pantocheck.conformance.cases.start_and_section import RunStart
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.step_log import ShareCallback, ignore_progress
 from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M
-from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record import OUTPUT_COLUMN, Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.case_facts_format import FmuRun
@@ -52,6 +52,8 @@ class PassageRun:
     """Uplift force of every pantograph [N]."""
     fmus: tuple[FmuRun, ...] = ()
     """FMUs that moved pantographs."""
+    outputs: Mapping[str, RealArray] = field(default_factory=dict)
+    """Recorded outputs of FMUs, (n,) each, by their names in a record."""
 
 
 def run_passage(
@@ -131,15 +133,15 @@ def _run_once(
 ) -> PassageRun:
     passage = build_passage(case, line, discretisation, uplift_forces)
     begin = time.perf_counter()
-    history, fmus = _integrate(case, line, passage, uplift_forces, progress)
+    history, fmus, outputs = _integrate(case, line, passage, uplift_forces, progress)
     record = record_passage(case, passage, history)
-    return PassageRun(record, build_run_table(discretisation, passage.duration, begin), uplift_forces, fmus)
+    return PassageRun(record, build_run_table(discretisation, passage.duration, begin), uplift_forces, fmus, outputs)
 
 
 def _integrate(
     case: Case, line: DiscretisedLine, passage: Passage, uplift_forces: tuple[float, ...], progress: ShareCallback
-) -> tuple[History, tuple[FmuRun, ...]]:
-    """Simulate the passage of a case with its FMUs, each in a process of its own.
+) -> tuple[History, tuple[FmuRun, ...], dict[str, RealArray]]:
+    """Simulate the passage of a case with its FMUs, each in a process of its own; outputs by their names in a record.
 
     Raises:
         FmuFailed: An FMU failed, or its coupling made energy.
@@ -159,9 +161,12 @@ def _integrate(
             for file, force in zip(case.pantographs, uplift_forces, strict=True)
         ]
         history = integrate_passage(line, passage, progress, programs)
-    moved = [(number, program) for number, program in enumerate(programs, 1) if program is not None]
+    moved, steps = [(number, fmu) for number, fmu in enumerate(programs, 1) if fmu is not None], history.time.size
     pairs = zip(moved, history.coupling, strict=True)
-    return history, tuple(describe_coupling(number, program, coupling) for (number, program), coupling in pairs)
+    runs = tuple(describe_coupling(number, fmu, coupling, steps) for (number, fmu), coupling in pairs)
+    outputs = ((number, fmu.list_outputs(steps)) for number, fmu in moved)
+    named = {f"{OUTPUT_COLUMN}{number}: {name}": values for number, rows in outputs for name, values in rows.items()}
+    return history, runs, named
 
 
 def build_run_table(discretisation: Discretisation, simulated_s: float, begin: float) -> RunTable:

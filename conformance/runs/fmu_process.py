@@ -17,7 +17,7 @@ from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.units import UNIT_FAMILIES
 from pantocheck.conformance.pantograph.fmu_archive import unpack_fmu
 from pantocheck.conformance.pantograph.fmu_table import FmuTable
-from pantocheck.conformance.results.case_facts_format import FmuRun
+from pantocheck.conformance.results.case_facts_format import FmuOutput, FmuRun
 from pantocheck.conformance.runs.program import Program, ProgramFailed
 from pantocheck.model.description.failures import SimulationError
 from pantocheck.model.dynamics.passage import Coupling
@@ -123,6 +123,8 @@ class FmuPantograph:
         self._values, self._time_step, self._offset = values, time_step, offset
         self._processes = ExitStack()
         self._accepted = False
+        self._last: list[float] = []
+        self._kept: list[list[float]] = []
         try:
             self.facts = self._start()
         except BaseException:
@@ -157,12 +159,16 @@ class FmuPantograph:
             if facts.variables.get(name, {}).get("causality") not in ("parameter", "input"):
                 hint = suggest_names(name, list(facts.variables))
                 raise InputError(f"{self.where}, key parameters", f"there is no parameter {name!r}", hint)
+        for name in table.outputs:
+            if facts.variables.get(name, {}).get("causality") not in ("output", "local"):
+                hint = suggest_names(name, list(facts.variables))
+                raise InputError(f"{self.where}, key outputs", f"there is no output {name!r}", hint)
         values = dict(table.parameters)
         for key in self._values.keys() & names.keys():
             values[names[key]] = float(
                 scales[key, names[key]].to_variable(np.array(self._values[key] * KEY_FACTORS[INPUTS[key]]))
             )
-        inputs, outputs = list(table.contact_force_N), list(table.head_height_m)
+        inputs, outputs = list(table.contact_force_N), [*table.head_height_m, *table.outputs]
         self._ask(LOAD_LIMIT, "start", step=self._time_step, inputs=inputs, outputs=outputs, values=values)
         self._accepted = False
         return facts
@@ -191,16 +197,28 @@ class FmuPantograph:
         answer = self._ask(STEP_LIMIT, "step", values=values, accept=self._accepted).get("values")
         self._accepted = False
         size = len(self._height)
-        if not isinstance(answer, list) or len(answer) != size or not all(isinstance(v, int | float) for v in answer):
+        expected = size + len(self.table.outputs)
+        if (
+            not isinstance(answer, list)
+            or len(answer) != expected
+            or not all(isinstance(v, int | float) for v in answer)
+        ):
             raise FmuFailed(f"{self.where} gave no heights: {answer!s:.100}")
-        heights = [scale.factor * value + scale.offset for scale, value in zip(self._height, answer, strict=True)]
+        self._last = answer[size:]
+        heights = [scale.factor * value + scale.offset for scale, value in zip(self._height, answer, strict=False)]
         if not np.isfinite(heights).all():
             raise FmuFailed(f"{self.where} gave a height that is not a finite number")
         return np.array(heights) + self._offset
 
     def accept(self) -> None:
-        """Keep the state after the last attempt."""
+        """Keep the state after the last attempt, and its outputs."""
         self._accepted = True
+        if self._last:
+            self._kept.append(self._last)
+
+    def list_outputs(self, steps: int) -> dict[str, RealArray]:
+        """Values of the recorded outputs after each of the last steps, by their names, (steps,) each."""
+        return dict(zip(self.table.outputs, np.array(self._kept[-steps:]).T, strict=True)) if self._kept else {}
 
     def restart(self) -> None:
         """Return to the first state; an FMU without state rollback is loaded again."""
@@ -239,8 +257,8 @@ LARGEST_ENERGY = 0.01
 """Largest energy that a coupling may make, over the work that line and FMU exchange [-]."""
 
 
-def describe_coupling(number: int, fmu: FmuPantograph, coupling: Coupling) -> FmuRun:
-    """Facts of the FMU of a pantograph and of its coupling in a passage.
+def describe_coupling(number: int, fmu: FmuPantograph, coupling: Coupling, steps: int) -> FmuRun:
+    """Facts of the FMU of a pantograph and of its coupling in the steps of a passage.
 
     Raises:
         FmuFailed: The coupling made too much energy for any verdict.
@@ -262,4 +280,8 @@ def describe_coupling(number: int, fmu: FmuPantograph, coupling: Coupling) -> Fm
         energy_J=coupling.energy,
         exchanged_J=coupling.exchanged,
         largest_difference_mm=1000 * coupling.largest_difference,
+        outputs=[
+            FmuOutput(name=name, unit=facts.variables[name]["unit"], lowest=values.min(), highest=values.max())
+            for name, values in fmu.list_outputs(steps).items()
+        ],
     )

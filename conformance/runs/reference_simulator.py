@@ -258,5 +258,6 @@ def _deliver(
         start=case.start_table,
         uplift_forces=passage.uplift_forces,
         fmus=passage.fmus,
+        fmu_outputs=passage.outputs,
     )
     return delivered, passage.uplift_forces

@@ -1,9 +1,11 @@
 """System under test: interface of every simulator and record folder."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 from pantocheck.conformance.cases.case import Case, find_missing_features
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Chart, LineShape, TextTable
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.records.record import Record
@@ -60,6 +62,8 @@ class Delivered:
     """Uplift force of every pantograph in the run [N]; empty: not known."""
     fmus: tuple[FmuRun, ...] = ()
     """FMUs that moved pantographs."""
+    fmu_outputs: Mapping[str, RealArray] = field(default_factory=dict)
+    """Recorded outputs of FMUs, (n,) each, by their names in a record."""
     line_shape: LineShape | None = None
     """Line at rest for a drawing; None: not known."""
     motion: PassageMotion | None = None

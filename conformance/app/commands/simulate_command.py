@@ -10,11 +10,11 @@ from pantocheck.conformance.app.commands.cases_option import CasesOption, comple
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
 from pantocheck.conformance.app.commands.kernel_option import KernelOption, demand_kernel
-from pantocheck.conformance.app.commands.options import SetOption, choose_train_case
+from pantocheck.conformance.app.commands.options import PantographOption, SetOption, choose_train_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.app.commands.quantities_table import build_quantities_table, list_names, select_main
 from pantocheck.conformance.cases.catalogue import open_catalogue
-from pantocheck.conformance.cases.input_changes import parse_changes
+from pantocheck.conformance.cases.input_changes import parse_changes, replace_pantographs
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
@@ -34,6 +34,7 @@ def simulate_command(
         str, typer.Option(help="System that simulates: builtin (reference simulator) or command:PROGRAM ARGUMENTS.")
     ] = "builtin",
     changed: SetOption = None,
+    pantograph: PantographOption = None,
     folders: CasesOption = None,
     kernel: KernelOption = None,
 ) -> CommandOutput:
@@ -50,7 +51,7 @@ def simulate_command(
     demand_kernel(kernel)
     check_record_path(out)
     catalogue, changes = open_catalogue(folders or ()), parse_changes(changed or ())
-    chosen = choose_train_case(case, changes, catalogue)
+    chosen = choose_train_case(case, (*replace_pantographs(pantograph or ()), *changes), catalogue)
     simulator = choose_system(system)
     check_writable(out.parent)
     # A record holds one run, so the refined run of the reference simulator is not needed.
@@ -72,6 +73,7 @@ def simulate_command(
             "start": None if outcome.start is None else outcome.start.model_dump(),
             "line": {"span_m": chosen.line.geometry.longest_span},
         },
+        outputs=outcome.fmu_outputs,
     )
     evaluation = CaseEvaluation(chosen, outcome)
     values = {str(owner): quantities for owner, quantities in evaluation.evaluation.values.items()}

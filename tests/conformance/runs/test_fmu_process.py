@@ -114,8 +114,8 @@ def test_a_unit_of_another_quantity_is_refused(unit: str, base: dict[str, float]
 def test_energy_of_the_coupling_limits_the_verdict(write_fmu: WriteFmu) -> None:
     with open_fmu(table_of(write_fmu), VALUES, 1e-3) as fmu:
         coupling = Coupling(energy=-0.99, exchanged=100.0, largest_difference=2e-6, attempts=10)
-        run = describe_coupling(1, fmu, coupling)
+        run = describe_coupling(1, fmu, coupling, 1)
         assert (run.energy_J, run.model, run.tool) == (-0.99, "linear pantograph 1.2", "test compiler")
         assert run.sha256 == fmu.table.sha256
         with pytest.raises(FmuFailed, match=r"made -1.01 J, more than 1%"):
-            describe_coupling(1, fmu, replace(coupling, energy=-1.01))
+            describe_coupling(1, fmu, replace(coupling, energy=-1.01), 1)
