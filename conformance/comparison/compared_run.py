@@ -7,7 +7,7 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.core.figure_data import Traces
+from pantocheck.conformance.core.figure_data import LineShape, Traces
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.results_part import Number
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
@@ -16,6 +16,7 @@ from pantocheck.conformance.grading.supported_frequencies import list_supported_
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, ValuesByOwner
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.results.motion_format import PassageMotion
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.results.supported_frequency import SupportedFrequency
@@ -57,6 +58,9 @@ class ComparedRun:
     """Highest frequencies that the parts of its model support; empty for a record."""
     unknown_components: tuple[str, ...] = ()
     """Components of the uncertainty that are not part of the half-widths."""
+    shape: LineShape | None = None
+    motion: PassageMotion | None = None
+    """Line at rest and moving picture of the passage; None: not known."""
     reason: str = ""
     """Reason why no pantograph has a quantity; empty if one has."""
 
@@ -138,6 +142,8 @@ def describe_delivery(case: Case, system: System, delivered: Delivered) -> Compa
         supports=case.line.geometry.supports,
         supported=tuple(list_supported_frequencies(case, delivered)),
         unknown_components=evaluation.uncertainty.unknown_components,
+        shape=delivered.line_shape,
+        motion=delivered.motion,
         reason=_find_reason(evaluation.evaluation),
     )
 
@@ -156,6 +162,8 @@ def _read_case_run(case: CaseResult, results: Results) -> ComparedRun:
         traces={int(owner): traces for owner, traces in case.traces.items()},
         supports=tuple(sorted(supports)),
         supported=tuple(case.supported),
+        shape=case.line_shape,
+        motion=case.motion,
     )
 
 

@@ -15,7 +15,7 @@ from pantocheck.conformance.comparison.force_difference import (
     span_profile,
 )
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.figure_data import Chart, Mark, Series
+from pantocheck.conformance.core.figure_data import Chart, LineShape, Mark, Series
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND, amplitude_spectrum
@@ -32,6 +32,7 @@ from pantocheck.conformance.results.comparison_format import (
     ForceAgreement,
     RunComparison,
 )
+from pantocheck.conformance.results.motion_format import LineScene
 from pantocheck.conformance.results.supported_frequency import find_supported_Hz
 
 # Charts of a comparison of runs: forces, spectra, coherence and differences along the spans.
@@ -194,6 +195,42 @@ def compare_subjects(subjects: Sequence[Sequence[ComparedRun]], case: str | None
         ),
         cases=tuple(_compare_case(key, runs) for key, runs in groups.items()),
     )
+
+
+def add_scenes(comparison: RunComparison, subjects: Sequence[Sequence[ComparedRun]]) -> RunComparison:
+    """Comparison with the passages of the subjects over each other, of the cases where two or more have them.
+
+    The lines must have the same wires; every motion is drawn over the first line at rest.
+    """
+    names = [subject.name for subject in comparison.subjects]
+    scenes = []
+    for case in comparison.cases:
+        runs = [_select_run(runs, case.id) for runs in subjects]
+        shape = next((run.shape for run in runs if run.motion and run.shape), None)
+        if shape is None:
+            continue
+        named = zip(names, runs, strict=True)
+        moving = {
+            name: run.motion for name, run in named if run.motion and _list_wires(run.shape) == _list_wires(shape)
+        }
+        if len(moving) > 1:
+            scenes.append(
+                LineScene(
+                    id=case.id,
+                    label="",
+                    line_shape=shape,
+                    names=list(moving),
+                    motions=list(moving.values()),
+                    speed=0.1,
+                    gain=5,
+                    together=True,
+                )
+            )
+    return comparison.model_copy(update={"scenes": tuple(scenes)})
+
+
+def _list_wires(shape: LineShape | None) -> list[str]:
+    return [] if shape is None else [curve.kind for curve in shape.side.curves]
 
 
 def _name_subjects(runs: Sequence[ComparedRun]) -> list[str]:

@@ -24,8 +24,10 @@ from pantocheck.conformance.pages.comparison_parts import clean_model
 from pantocheck.conformance.pages.condition_sections import BAND_MARK, CONDITIONED
 from pantocheck.conformance.pages.criteria_table import Basis
 from pantocheck.conformance.pages.frequency_section import mute_cell
+from pantocheck.conformance.pages.passage_figure import draw_scene
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
+    clean_text,
     format_plain,
     format_signed,
     format_value,
@@ -74,7 +76,8 @@ UNKNOWN_CONTACT = (
 
 def build_run_comparison(results: RunComparison) -> doc.Document:
     """The report on the content of comparison.json."""
-    results = clean_model(results)
+    scenes = [scene.model_copy(update={"names": list(map(clean_text, scene.names))}) for scene in results.scenes]
+    results = clean_model(results.model_copy(update={"scenes": ()}))
     names = [subject.name for subject in results.subjects]
     header = doc.PlainHeader("Comparison of runs", f"{', '.join(names[1:])} beside {names[0]}.")
     facts = {
@@ -84,11 +87,14 @@ def build_run_comparison(results: RunComparison) -> doc.Document:
     suite = results.suite
     facts |= {"Suite": f"Pantocheck {suite.version}", "Digest of the suite": suite.digest}
     blocks: list[doc.Block] = [doc.Paragraph(RUN_COMPARISON_SCOPE), doc.Facts(tuple(facts.items()))]
+    passages = {scene.id: doc.Figures((draw_scene(scene, n),)) for n, scene in enumerate(scenes)}
     for case in results.cases:
         supported = dict(zip(names, case.supported or [()] * len(names), strict=True))
         owners = [_build_owner(owner, supported) for owner in case.owners if owner.quantities]
-        blocks.append(doc.Section(case.id or "Records", (*doc.warn(case.notes), *owners)))
-    return doc.Document(header.headline, header, tuple(blocks))
+        blocks.append(
+            doc.Section(case.id or "Records", (*doc.warn(case.notes), *filter(None, (passages.get(case.id),)), *owners))
+        )
+    return doc.Document(header.headline, header, tuple(blocks), scenes=tuple(scenes))
 
 
 def _build_owner(owner: ComparedOwner, supported: Supported) -> doc.Section:

@@ -1,13 +1,12 @@
 """Pages of `pantocheck view`: passages of results, as moving pictures where their wires are known, and mass drops."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_case_figures
 from pantocheck.conformance.pages.document_facts import name_system
-from pantocheck.conformance.pages.passage_figure import ENLARGED, ILLUSTRATION, draw_instant, draw_passage
+from pantocheck.conformance.pages.passage_figure import ILLUSTRATION, draw_passage, draw_scene
 from pantocheck.conformance.results.motion_format import LineScene
 from pantocheck.conformance.results.results_format import Results
 
@@ -28,20 +27,7 @@ def build_view(results: Results) -> doc.Document:
 def build_drop_view(title: str, scenes: Sequence[LineScene]) -> doc.Document:
     """Page with the moving pictures of the mass drops of a case."""
     blocks = [
-        doc.Section(scene.names[0], (doc.Paragraph((doc.Code(scene.id),)), doc.Figures((_draw_drop(scene, number),))))
+        doc.Section(scene.names[0], (doc.Paragraph((doc.Code(scene.id),)), doc.Figures((draw_scene(scene, number),))))
         for number, scene in enumerate(scenes)
     ]
     return replace(doc.build_plain_document("Mass drops", f"{title}. {ILLUSTRATION}", blocks), scenes=tuple(scenes))
-
-
-def _draw_drop(scene: LineScene, number: int) -> doc.Figure:
-    """Picture of a mass drop at its release, which a script replaces; `number` is the index of the scene."""
-    [motion], shape = scene.motions, scene.line_shape
-    frame = max(0, math.floor(-motion.start_s / motion.step_s))
-    caption = (
-        f"{scene.names[0]}: the line under the mass, at the release. Motion {ENLARGED} times enlarged over the "
-        f"heights. {ILLUSTRATION}"
-    )
-    curves = doc.Curves("passage", number)
-    svg = draw_instant(motion, shape, (shape.supports_m[0], shape.supports_m[0]), frame)
-    return doc.Figure(svg, caption, caption, anchor=f"scene-{number + 1}", curves=curves)

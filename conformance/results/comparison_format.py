@@ -10,6 +10,7 @@ from pantocheck.conformance.core.json_file import Rounded, RoundedModel, round_t
 from pantocheck.conformance.core.results_part import Suite
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pantograph.response_record import HeadPoint, ResponseKind
+from pantocheck.conformance.results.motion_format import LineScene
 from pantocheck.conformance.results.supported_frequency import SupportedFrequency
 
 NumberPair = tuple[Rounded, Rounded]
@@ -293,3 +294,5 @@ class RunComparison(RoundedModel):
     subjects: tuple[ComparedSource, ...]
     """The first one is that with which the others are compared."""
     cases: tuple[ComparedCase, ...]
+    scenes: Annotated[tuple[LineScene, ...], Field(exclude_if=lambda scenes: not scenes)] = ()
+    """Passages of the subjects over each other; missing: fewer than two subjects of a case have shapes of wires."""

@@ -139,7 +139,7 @@ class PassageMotion(ResultsPart):
 
 
 class LineScene(ResultsPart):
-    """Moving pictures of one line without pantographs, from which a reader chooses: mass drops, or mode shapes."""
+    """Moving pictures of one line: a reader chooses one (mass drops, mode shapes), or all move over each other."""
 
     id: str
     """Name of the line or of its record."""
@@ -153,6 +153,8 @@ class LineScene(ResultsPart):
     """Speed at the start, over that of the motion."""
     gain: Annotated[FiniteNumber, Field(gt=0)]
     """Enlargement of the motion over the heights at the start."""
+    together: bool = False
+    """Passages that are compared: the first pantograph of each is at the place of that of the first picture."""
 
     @model_validator(mode="after")
     def _named_motions(self) -> Self:

@@ -24,8 +24,8 @@ const WIRE_WIDTHS = { contact_wire: 2.4, messenger_wire: 1.5, stitch_wire: 1 };
 
 /** Scene of a moving line: draws on the canvas of a view. */
 class PassageScene {
-  constructor(canvas, shownCase, passage) {
-    Object.assign(this, { canvas, passage, case: shownCase, signals: listSignals(shownCase, passage) });
+  constructor(canvas, shownCase, passage, others) {
+    Object.assign(this, { canvas, passage, others, case: shownCase, signals: listSignals(shownCase, passage, others) });
     const places = passage.wires.flatMap(({ curve }) => [curve.x_m[0], curve.x_m.at(-1)]);
     this.whole = [Math.min(...places), Math.max(...places)];
     const heights = passage.wires.flatMap(({ curve }) => curve.y_m);
@@ -116,6 +116,7 @@ class PassageScene {
     pen.clearRect(0, 0, this.width, this.height);
     pen.drawImage(this.layer, 0, 0, this.width, this.height);
     this.drawGround();
+    this.inPanel("side", () => this.others.forEach((other, number) => this.drawOther(other, number, time)));
     this.inPanel("side", () => this.drawLine(frame));
     this.inPanel("side", () => this.passage.pantographs.forEach((part, i) => this.drawPantograph(part, i, time, frame)));
     if (this.panels.plan) this.drawPlan(time);
@@ -231,14 +232,35 @@ class PassageScene {
     }
   }
 
+  /** Wires and heads of another passage, with its name, over those of the first one. */
+  drawOther(other, number, time) {
+    const at = alignTime(other, this.passage, time);
+    const frame = (at - other.start_s) / other.step_s;
+    const [tone, top] = [`curve-${number + 2}`, this.panels.side.top + 14];
+    this.write(this.case.names[0], LEFT + 6, top);
+    this.write(this.case.names[number + 1], LEFT + 6, top + 16 * (number + 1), tone);
+    if (frame < 0 || frame > other.frames - 1) return;
+    for (const wire of other.wires) {
+      const points = wire.x.map((x, i) => [this.atPlace(x), this.atHeight(wire.rest(x), readField(wire.rise, frame, i) / 1000)]);
+      this.stroke(points, tone, WIRE_WIDTHS[wire.kind], DASHES[1]);
+    }
+    for (const part of other.pantographs) {
+      const place = part.start_m + other.speed_m_s * (at - other.start_s);
+      const wire = this.contactWire(place, other);
+      if (!wire) continue;
+      const [x, y] = [this.atPlace(place), this.wireAt(wire, frame, place)];
+      this.stroke([[x - 22, y + 2], [x + 22, y + 2]], tone, 4);
+    }
+  }
+
   isSlack(dropper, frame) {
     const { slack } = this.passage;
     return slack !== null && slack.values[Math.min(Math.round(frame), slack.frames - 1) * slack.columns + dropper.column] > 0;
   }
 
   /** Contact wire under a place: the lowest one. */
-  contactWire(place) {
-    const wires = this.passage.wires.filter(({ kind, x }) => kind === "contact_wire" && place >= x[0] && place <= x.at(-1));
+  contactWire(place, passage = this.passage) {
+    const wires = passage.wires.filter(({ kind, x }) => kind === "contact_wire" && place >= x[0] && place <= x.at(-1));
     return wires.sort((first, second) => first.rest(place) - second.rest(place))[0];
   }
 

@@ -1,7 +1,13 @@
 // Signals of a moving line over its time: force with limits, its 20–50 Hz part, uplift, sensors.
 
+/** Time of a passage when its first pantograph is where that of another one is at its own time. */
+function alignTime(passage, other, time) {
+  const place = other.pantographs[0].start_m + other.speed_m_s * (time - other.start_s);
+  return passage.start_s + (place - passage.pantographs[0].start_m) / passage.speed_m_s;
+}
+
 /** Curves of the panels of signals: `key`, `unit` and `curves` with times, values, colour, width, and `levels`. */
-function listSignals(shownCase, passage) {
+function listSignals(shownCase, passage, others) {
   const frameTimes = Array.from({ length: passage.frames }, (_, i) => passage.start_s + i * passage.step_s);
   const force = { key: "force", label: translate("force [N]"), curves: [], levels: [] };
   const band = { key: "band", label: "20–50 Hz [N]", curves: [], levels: [] };
@@ -16,6 +22,14 @@ function listSignals(shownCase, passage) {
     const times = Array.from(part.band.values, (_, n) => part.band_start_s + n * part.band_step_s);
     band.curves.push({ x: times, y: part.band.values, colour: name, width: 1.2 });
   });
+  others.forEach((other, number) =>
+    other.pantographs.forEach((part, i) => {
+      const style = { colour: `curve-${number + 2}`, dash: DASHES[i + 1] };
+      const times = (start, step, count) => Array.from({ length: count }, (_, n) => alignTime(passage, other, start + n * step));
+      force.curves.push({ x: times(other.start_s, other.step_s, part.force.frames), y: part.force.values, width: 1.6, ...style });
+      if (part.band) band.curves.push({ x: times(part.band_start_s, part.band_step_s, part.band.frames), y: part.band.values, width: 1.2, ...style });
+    }),
+  );
   const supports = shownCase.uplift.filter((support) => support.time_s.length);
   const uplift = { key: "uplift", label: translate("uplift [mm]"), levels: [], curves: [] };
   supports.forEach((support, i) => uplift.curves.push({ x: support.time_s, y: support.uplift_mm, width: 1.3, ...curveStyle(i), peak: `${formatNumber(support.support_m, 6)} m` }));

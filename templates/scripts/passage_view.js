@@ -44,7 +44,7 @@ class PassageView {
     const names = (shown.names ?? []).map((name, n) => [n, name]);
     this.chosen = choice(translate("Shown motion"), names, 0, () => this.choose(Number(this.chosen.value)));
     this.tools = [
-      ...(names.length > 1 ? [this.chosen] : []),
+      ...(names.length > 1 && !shown.together ? [this.chosen] : []),
       ...[button("|◀", translate("Step back"), () => this.step(-1)), this.play, button("▶|", translate("Step forward"), () => this.step(1))],
       ...[this.speed, this.gain],
       ...(parts.length ? [this.followed, button(translate("Smallest force"), translate("Smallest force"), () => this.showSmallest())] : []),
@@ -79,7 +79,9 @@ class PassageView {
 
   /** Decode the picture. */
   async decode() {
-    this.scene = new PassageScene(this.canvas, this.case, await decodePassage(this.case));
+    const shown = this.case.together ? this.motions : [this.case.motion];
+    const [passage, ...others] = await Promise.all(shown.map((motion) => decodePassage({ ...this.case, motion })));
+    this.scene = new PassageScene(this.canvas, this.case, passage, others);
   }
 
   /** Decode the picture, draw its first instant and bind keys and pointers. */
@@ -129,7 +131,11 @@ class PassageView {
     const sensors = listSensors(passage).map(({ wire, x_m: place, text }) => `${text}: ${formatNumber(1000 * riseAt(wire, frame, place), 3)}`);
     const droppers = passage.slack ? [fill(translate("slack droppers: {n}"), { n: slack })] : [];
     const named = sensors.length ? [`${this.case.label} ${sensors.join(", ")}`] : [];
-    return [`t = ${this.time.toFixed(3)} s`, ...parts, ...named, ...droppers].join("; ");
+    const others = this.scene.others.map((other, i) => {
+      const at = (alignTime(other, passage, this.time) - other.start_s) / other.step_s;
+      return `${this.case.names[i + 1]}: ${other.pantographs.map((part) => `${formatNumber(readField(part.force, at, 0), 3)} N`).join(", ")}`;
+    });
+    return [`t = ${this.time.toFixed(3)} s`, ...parts, ...others, ...named, ...droppers].join("; ");
   }
 
   /** Play, or pause. */
@@ -202,7 +208,7 @@ class PassageView {
 
   /** Go to the smallest force up to 20 Hz in the analysis section, close to its pantograph. */
   showSmallest() {
-    const [low, high] = this.case.run.evaluated_m;
+    const [low, high] = this.case.run.evaluated_m ?? [-Infinity, Infinity];
     let smallest = { force: Infinity };
     this.scene.passage.pantographs.forEach((part, i) => {
       part.force.values.forEach((force, frame) => {

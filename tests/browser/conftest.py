@@ -13,16 +13,20 @@ from typing import Any
 import pytest
 
 from helpers.example_identification import build_example_line
-from helpers.example_passage import with_passage
+from helpers.example_passage import STEP_S, with_passage
 from helpers.example_results import chart, example, with_hostile_text, with_measured_run, with_reference
+from pantocheck.conformance.comparison.compared_run import ComparedRun
+from pantocheck.conformance.comparison.run_comparison import add_scenes, compare_subjects
 from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import Document, Figure, Figures, PlainHeader, Section, make_grid
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.identification_page import build_identification_document
+from pantocheck.conformance.pages.run_comparison_page import build_run_comparison
 from pantocheck.conformance.pages.site_pages import build_site_index, order_results
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.results.identification_format import IdentifiedLine
+from pantocheck.conformance.results.motion_format import code_field
 from pantocheck.conformance.results.results_format import Results, SystemIdentity
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -75,6 +79,22 @@ def build_site_page() -> Document:
     return build_site_index("Site", order_results(contents), pages)
 
 
+def build_compared_page() -> Document:
+    """Comparison of the example passage with one of half the rise, which starts one frame later."""
+    subjects = []
+    for name, share in (("first", 1.0), ("second", 0.5)):
+        case = Results.model_validate(with_passage()).cases[0]
+        assert case.motion is not None
+        wires = [
+            wire.model_copy(update={"rise_mm": code_field(share * wire.rise_mm.decode(), 0.1)})
+            for wire in case.motion.wires
+        ]
+        motion = case.motion.model_copy(update={"wires": wires, "start_s": case.motion.start_s + (share < 1) * STEP_S})
+        run = ComparedRun("results", name, "", "", case.id, None, {}, {}, shape=case.line_shape, motion=motion)
+        subjects.append([run])
+    return build_run_comparison(add_scenes(compare_subjects(subjects, None), subjects))
+
+
 @pytest.fixture(scope="session")
 def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Pages by name: certificates, one of them with hostile texts, a mass-drop report, and a page without results."""
@@ -82,6 +102,7 @@ def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         "certificate": build_certificate(Results.model_validate(example())),
         "measured": build_certificate(Results.model_validate(with_measured_run())),
         "passage": build_certificate(Results.model_validate(with_passage())),
+        "compared": build_compared_page(),
         "reference": build_certificate(Results.model_validate(with_reference())),
         "hostile": build_certificate(Results.model_validate(with_hostile_text())),
         "identification": build_identification_document([IdentifiedLine.model_validate(build_example_line())]),

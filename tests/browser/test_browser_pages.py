@@ -16,7 +16,7 @@ AXE = Path(__file__).parents[1] / "data" / "axe-core"
 
 AXE_SCRIPT = lzma.decompress((AXE / "axe.min.js.xz").read_bytes())
 
-NAMES = ["certificate", "measured", "passage", "hostile", "identification", "plain"]
+NAMES = ["certificate", "measured", "passage", "compared", "hostile", "identification", "plain"]
 
 OVERLAPS = """family => [...document.querySelectorAll("figure > div > svg")].flatMap(svg => {
   const texts = [...svg.querySelectorAll("text")];
@@ -55,7 +55,7 @@ def test_page_is_as_wide_as_the_screen(open_page: Any, name: str, width: int) ->
     ("name", "scheme"),
     [
         *(("certificate", "dark"), ("hostile", "light"), ("identification", "dark"), ("plain", "light")),
-        *(("plain", "dark"), ("passage", "light"), ("passage", "dark")),
+        *(("plain", "dark"), ("passage", "light"), ("passage", "dark"), ("compared", "dark")),
     ],
 )
 def test_page_breaks_no_rule_of_accessibility(open_page: Any, name: str, scheme: str) -> None:

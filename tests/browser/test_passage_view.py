@@ -185,3 +185,27 @@ def test_picture_looks_like_the_stored_one(open_page: Any, name: str, width: int
     assert np.abs(np.asarray(taken, float) - stored).mean() < 4
     page.emulate_media(color_scheme="dark" if scheme == "light" else "light")
     assert np.abs(np.asarray(take_picture(page, figure), float) - stored).mean() > 50
+
+
+def test_compared_passages_move_at_the_same_place(open_page: Any) -> None:
+    """The second passage begins one frame later with the same forces: at the lowest force of the first, both have 40 N.
+
+    Wires and curves of the second have a colour of their own, #9f4d00.
+    """
+    page = open_page("compared")
+    figure = page.locator("#scene-1")
+    figure.scroll_into_view_if_needed()
+    page.locator("#scene-1 .readout", has_text="t = ").wait_for()
+    figure.get_by_role("button", name="Smallest force").click()
+    readout = page.locator("#scene-1 .readout").inner_text()
+    assert re.search(r"pantograph 1: .*, 40 N .*; second: 40 N;", readout)
+    assert page.locator("#scene-1 .tools select").count() == 3  # no choice of one of the two motions
+    tones = page.evaluate(
+        """() => {
+          const canvas = document.querySelector("#scene-1 canvas");
+          const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          const numbers = Array.from({ length: data.length / 4 }, (_, n) => 4 * n);
+          return numbers.filter(i => data[i] === 159 && data[i + 1] === 77).length;
+        }"""
+    )
+    assert tones > 500

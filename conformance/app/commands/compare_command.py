@@ -23,7 +23,7 @@ from pantocheck.conformance.comparison.compared_run import (
     read_results_runs,
     simulate_run,
 )
-from pantocheck.conformance.comparison.run_comparison import compare_subjects
+from pantocheck.conformance.comparison.run_comparison import add_scenes, compare_subjects
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.pages.report_writers import remark_missing_formats
@@ -75,7 +75,7 @@ def compare_command(
         with follow_steps(subject):
             runs.append(_load_subject(subject, simulated))
     comparison = compare_subjects(runs, simulated.id if simulated is not None else case)
-    files = [] if out is None else write_comparison(comparison, out)
+    files = [] if out is None else write_comparison(add_scenes(comparison, runs), out)
     return CommandOutput(
         escape_text(" beside ".join(subject.name for subject in comparison.subjects)),
         comparison,

@@ -2,9 +2,11 @@
 
 from typing import Any
 
+from helpers.example_passage import with_passage
 from pantocheck.conformance.comparison.compared_run import ComparedRun
-from pantocheck.conformance.comparison.run_comparison import compare_subjects
+from pantocheck.conformance.comparison.run_comparison import add_scenes, compare_subjects
 from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.results.results_format import Results
 
 
 def run(name: str, values: dict[str, Value], uncertainty: dict[str, Value]) -> ComparedRun:
@@ -23,3 +25,18 @@ def test_every_quantity_of_any_run_is_compared() -> None:
     assert found["std_force_N"].difference[1:] == (1.0, None)
     assert found["mean_force_N"].beyond_uncertainty == (False, True, False)
     assert found["min_force_N"].difference == (None, None, None)
+
+
+def test_passages_of_lines_with_other_wires_are_not_laid_over_each_other() -> None:
+    case = Results.model_validate(with_passage()).cases[0]
+    shape = case.line_shape
+    assert shape is not None
+    lone = shape.model_copy(update={"side": shape.side.model_copy(update={"curves": shape.side.curves[:1]})})
+    subjects = [
+        [ComparedRun("results", name, "", "", case.id, None, {}, {}, shape=drawn, motion=case.motion)]
+        for name, drawn in (("first", shape), ("second", shape), ("other", lone))
+    ]
+    [scene] = add_scenes(compare_subjects(subjects, None), subjects).scenes
+    assert scene.names == ["first", "second"]
+    assert scene.together
+    assert add_scenes(compare_subjects(subjects[1:], None), subjects[1:]).scenes == ()
