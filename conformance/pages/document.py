@@ -12,6 +12,7 @@ from datetime import datetime
 from typing import Any, Literal, TypeVar
 
 from pantocheck.conformance.core.reproducibility import read_source_date
+from pantocheck.conformance.results.exploration_format import Exploration
 from pantocheck.conformance.results.motion_format import LineScene
 from pantocheck.conformance.results.report_files import Language
 from pantocheck.conformance.results.results_format import Results
@@ -272,6 +273,8 @@ class Document:
     """Language of its pages; its texts are English until a writer translates them."""
     scenes: tuple[LineScene, ...] = ()
     """Moving pictures of a document without results, to be embedded in the HTML."""
+    exploration: Exploration | None = None
+    """Sliders of an explorer, to be embedded in the HTML."""
 
 
 def to_plain(value: Any) -> Any:
@@ -354,13 +357,21 @@ def digest_results(results: Results) -> str:
 
 def encode_data_block(results: Results) -> str:
     """Content of the data block of the HTML page: results as JSON text in ASCII without `<`, `>` and `&`."""
-    return json.dumps(results.to_dict(), separators=(",", ":"), allow_nan=False).translate(ESCAPES)
+    return _encode(results.to_dict())
+
+
+def encode_exploration(exploration: Exploration) -> str:
+    """Content of the data block of an explorer."""
+    return _encode(exploration.model_dump(mode="json"))
 
 
 def encode_scenes(scenes: Iterable[LineScene]) -> str:
     """Content of the data block of moving pictures, in the form of the cases of results."""
-    cases = [scene.model_dump(mode="json") for scene in scenes]
-    return json.dumps({"cases": cases}, separators=(",", ":"), allow_nan=False).translate(ESCAPES)
+    return _encode({"cases": [scene.model_dump(mode="json") for scene in scenes]})
+
+
+def _encode(tree: object) -> str:
+    return json.dumps(tree, separators=(",", ":"), allow_nan=False).translate(ESCAPES)
 
 
 def find_date(results: Results) -> int:

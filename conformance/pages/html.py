@@ -18,10 +18,17 @@ from pantocheck.conformance.pages.document import (
     SCENES_ID,
     Document,
     encode_data_block,
+    encode_exploration,
     encode_scenes,
     to_plain,
 )
-from pantocheck.conformance.pages.page_code import PageCode, read_plain_code, read_results_code, read_scene_code
+from pantocheck.conformance.pages.page_code import (
+    PageCode,
+    read_explorer_code,
+    read_plain_code,
+    read_results_code,
+    read_scene_code,
+)
 from pantocheck.conformance.pages.translation import translate, translate_document, translate_tree
 from pantocheck.conformance.pages.words import bind_page_units, read_words
 
@@ -33,7 +40,9 @@ def render_html(document: Document) -> str:
     page = _build_environment().get_template("page.html")
     words = read_words()
     return page.render(
-        document=bind_page_units(to_plain(replace(translate_document(document), results=None, scenes=()))),
+        document=bind_page_units(
+            to_plain(replace(translate_document(document), results=None, scenes=(), exploration=None))
+        ),
         translate=lambda text: translate(text, language).text,
         verdicts=translate_tree(words["verdict"], language),
         trusts=translate_tree(words["trust"], language),
@@ -54,6 +63,8 @@ def _choose_code(document: Document) -> tuple[str, str | None, PageCode]:
         return BLOCK_ID, encode_data_block(document.results), read_results_code(document.language)
     if document.scenes:
         return SCENES_ID, encode_scenes(document.scenes), read_scene_code(document.language)
+    if document.exploration is not None:
+        return SCENES_ID, encode_exploration(document.exploration), read_explorer_code()
     return "", None, read_plain_code(document.language)
 
 

@@ -12,6 +12,8 @@ from pantocheck.conformance.results.report_files import LANGUAGES
 
 PAGE_STYLE, PLOT_STYLE = "page.css", "uplot/uPlot.min.css"
 
+EXPLORER_STYLE = "explorer.css"
+
 PLOT_LIBRARY = "uplot/uPlot.iife.min.js"
 """Unmodified file of the release 1.6.32 of uPlot, from its package of the npm registry; licence in the same folder."""
 
@@ -26,13 +28,22 @@ CHOICE_SCRIPTS = ("pole_choice",)
 SCENE_SCRIPTS = ("results", "plot_style", "motion_data", "passage_signals", "passage_scene", "passage_view", "views")
 """Further parts of the script of a page with moving pictures and without results."""
 
-CURVE_SCRIPTS = (
+PLOT_SCRIPTS = (
     *("results", "download", "spectrum", "spans"),
     *("plot_style", "legend", "plot_lines", "plot_keys", "touch", "plot"),
-    *("force_view", "curves_view", "uplift_view", "measured_view"),
-    *SCENE_SCRIPTS[2:],
+    *("force_view", "curves_view", "uplift_view"),
 )
+"""Parts that draw curves with the library for plots."""
+
+CURVE_SCRIPTS = (*PLOT_SCRIPTS, "quantities_file", "measured_view", *SCENE_SCRIPTS[2:])
 """Further parts of the script of a page with results, in the order of their use."""
+
+EXPLORE_SCRIPTS = (
+    *PLOT_SCRIPTS,
+    *SCENE_SCRIPTS[2:-1],
+    *("explore_controls", "explore_results", "explore_saving"),
+)
+"""Further parts of the script of an explorer."""
 
 
 @dataclass(frozen=True)
@@ -43,13 +54,16 @@ class PageCode:
     scripts: tuple[str, ...]
     notice: str = ""
     """Licence of the scripts of others, which has to stand in every copy of them."""
+    asks_server: bool = False
+    """Whether the page sends requests to the server that it comes from."""
 
     @property
     def policy(self) -> str:
         """Content security policy: no request, no code but these texts; `data:` admits images inside figures."""
         sources = {"script-src": self.scripts, "style-src": self.styles}
         admitted = (f"{name} {' '.join(map(_digest, texts))}" for name, texts in sources.items())
-        return "; ".join(("default-src 'none'", *admitted, "img-src data:", "base-uri 'none'", "form-action 'none'"))
+        others = ("img-src data:", *(("connect-src 'self'",) if self.asks_server else ()))
+        return "; ".join(("default-src 'none'", *admitted, *others, "base-uri 'none'", "form-action 'none'"))
 
 
 @cache
@@ -72,6 +86,14 @@ def read_results_code(language: str = LANGUAGES[0]) -> PageCode:
     scripts = (_read(PLOT_LIBRARY), join_scripts(name_scripts((*TABLE_SCRIPTS, *CURVE_SCRIPTS)), language))
     styles = (_read(PLOT_STYLE), translate_marked(_read(PAGE_STYLE), language))
     return PageCode(styles, scripts, f"uPlot: {_read(PLOT_LICENCE)}")
+
+
+@cache
+def read_explorer_code() -> PageCode:
+    """Styles and scripts of an explorer, in English."""
+    code = read_results_code()
+    script = join_scripts(name_scripts(("elements", *EXPLORE_SCRIPTS)))
+    return PageCode((*code.styles, _read(EXPLORER_STYLE)), (code.scripts[0], script), code.notice, asks_server=True)
 
 
 def _read(name: str) -> str:

@@ -10,6 +10,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import LineShape
+from pantocheck.conformance.core.step_log import ShareCallback, ignore_progress
 from pantocheck.conformance.line.line_shape import LineView
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
@@ -92,6 +93,7 @@ def film_passage(
     discretisation: Discretisation,
     record: Record,
     uplift_forces: tuple[float, ...],
+    progress: ShareCallback = ignore_progress,
 ) -> PassageMotion | None:
     """Moving picture of a passage while the train is on the drawn line.
 
@@ -102,6 +104,7 @@ def film_passage(
         discretisation: Element length and time step.
         record: Record of the passage.
         uplift_forces: Uplift force of every pantograph [N].
+        progress: Called from time to time with the completed share; its exception ends the work.
 
     Returns:
         Picture; None if another program moves a pantograph, or if no form is small enough.
@@ -111,11 +114,16 @@ def film_passage(
     stretch = choose_stretch(line, shape, steps)
     if case.fmus or not stretch.request.steps:
         return None
-    frames = integrate_passage(line, replace(passage, frames=stretch.request, watched=())).frames
+    frames = integrate_passage(line, replace(passage, frames=stretch.request, watched=()), progress).frames
     if frames is None:
         return None
     signals, at = RecordSignals(record, case.file.filter).pantographs, np.array(steps) - 1
-    return take_small_form(lambda form: _code_motion(case, line, stretch, frames, signals, record, at, form))
+
+    def code(form: CodedForm) -> PassageMotion:
+        progress(1.0)
+        return _code_motion(case, line, stretch, frames, signals, record, at, form)
+
+    return take_small_form(code)
 
 
 def take_small_form(code_motion: Callable[[CodedForm], PassageMotion]) -> PassageMotion | None:

@@ -102,11 +102,20 @@ class ReferenceSimulator:
             motion = film_passage(case, line, shape, discretisation, delivered.record, uplift_forces)
         return replace(delivered, line_shape=shape, motion=motion), uplift_forces
 
-    def run_unrefined(self, case: Case) -> Delivered:
-        """Run a case once, with the discretisation of the case."""
-        steps = StepSequence(_LOGGER, case.id, {COMPILATION: 0.0, OWN_MESH: 1.0})
-        start = self.start_forces
-        return _deliver(case, case.file.discretisation, progress=_begin_run(case, steps), start_forces=start)[0]
+    def run_unrefined(self, case: Case, follow: ShareCallback = ignore_progress) -> Delivered:
+        """Run a case once, with the discretisation of the case.
+
+        Args:
+            case: Case to run.
+            follow: Also receives the completed share; its exception ends the run.
+        """
+        progress = _begin_run(case, StepSequence(_LOGGER, case.id, {COMPILATION: 0.0, OWN_MESH: 1.0}))
+
+        def report(share: float) -> None:
+            follow(share)
+            progress(share)
+
+        return _deliver(case, case.file.discretisation, progress=report, start_forces=self.start_forces)[0]
 
 
 @dataclass(frozen=True)

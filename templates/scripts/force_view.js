@@ -11,9 +11,9 @@ function stripForces(trace) {
 }
 
 /** Curves of a force: that of the reference behind it, as delivered, filtered, and its levels. */
-function forceCurves(trace, reference) {
+function forceCurves(trace, reference, referenceLabel = translate("reference, 0–20 Hz")) {
   const count = trace.position_m.length;
-  const curves = reference.length ? [{ label: translate("reference, 0–20 Hz"), values: reference, colour: "curve-2", width: 2 }] : [];
+  const curves = reference.length ? [{ label: referenceLabel, values: reference, colour: "curve-2", width: 2 }] : [];
   curves.push({ label: translate("unfiltered"), values: trace.force_N, colour: "faint", width: 1 });
   const names = [translate("front strip"), translate("rear strip")];
   stripForces(trace).forEach((values, i) => curves.push({ label: names[i], values, colour: `curve-${3 * (i + 1)}`, width: 1 }));
@@ -60,7 +60,7 @@ class ForceView {
     const name = fill(translate("pantograph {n}"), { n: figure.dataset.owner });
     this.plot = new Plot({
       ...{ label: fill(translate("Contact force of {t}"), { t: name }), xLabel: translate("position along the track [m]") },
-      ...{ xUnit: "m", yLabel: translate("contact force [N]"), yUnit: "N", height: 300, x, lines, curves: forceCurves(this.trace, reference) },
+      ...{ xUnit: "m", yLabel: translate("contact force [N]"), yUnit: "N", height: 300, x, lines, curves: forceCurves(this.trace, reference, this.case.reference?.label) },
       levels: forceLevels(this.case, Number(figure.dataset.owner), "ink"),
     });
     const strips = stripForces(this.trace);
@@ -104,9 +104,14 @@ class ForceView {
     return [element("div", {}, element("p", { class: "small" }, title), this.spans.element)];
   }
 
+  /** Plots of the view that are made. */
+  get plots() {
+    return [this.plot, this.spectrum, this.spans].filter(Boolean);
+  }
+
   /** Draw all plots of the view. */
   draw() {
-    for (const plot of [this.plot, this.spectrum, this.spans]) plot?.draw();
+    for (const plot of this.plots) plot.draw();
     if (!this.spectrum) return;
     this.plot.onRange = (range) => this.updateSpectrum(range);
     this.updateSpectrum(this.plot.stretch);

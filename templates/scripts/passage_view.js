@@ -48,7 +48,7 @@ class PassageView {
       ...[button("|◀", translate("Step back"), () => this.step(-1)), this.play, button("▶|", translate("Step forward"), () => this.step(1))],
       ...[this.speed, this.gain],
       ...(parts.length ? [this.followed, button(translate("Smallest force"), translate("Smallest force"), () => this.showSmallest())] : []),
-      button(translate("Link to this instant"), translate("Link to this instant"), () => this.link()),
+      ...(figure.id ? [button(translate("Link to this instant"), translate("Link to this instant"), () => this.link())] : []),
     ];
     this.hint = translate("Drag the picture or the curves; space plays, arrow keys step.");
     this.canvas = element("canvas", { "aria-hidden": "true" });
@@ -77,11 +77,22 @@ class PassageView {
     this.fit();
   }
 
-  /** Decode the picture. */
+  /** Show another passage, at the same instant if it has it; it goes on if one plays. */
+  async change(shown) {
+    const { time } = this;
+    this.motions = [shown.motion];
+    this.select(shown, 0);
+    this.time = Math.min(Math.max(time, this.first), this.last);
+    await this.decode();
+    this.fit();
+  }
+
+  /** Decode the picture, unless another one is selected meanwhile. */
   async decode() {
-    const shown = this.case.together ? this.motions : [this.case.motion];
-    const [passage, ...others] = await Promise.all(shown.map((motion) => decodePassage({ ...this.case, motion })));
-    this.scene = new PassageScene(this.canvas, this.case, passage, others);
+    const { case: shown } = this;
+    const motions = shown.together ? this.motions : [shown.motion];
+    const [passage, ...others] = await Promise.all(motions.map((motion) => decodePassage({ ...shown, motion })));
+    if (shown === this.case) this.scene = new PassageScene(this.canvas, shown, passage, others);
   }
 
   /** Decode the picture, draw its first instant and bind keys and pointers. */

@@ -64,8 +64,9 @@ class Plot {
       },
     };
     this.canvas = new uPlot(options, [x, ...curves.map((curve) => curve.values)], this.area);
-    new ResizeObserver(() => this.fit()).observe(this.area);
-    onSchemeChange(() => this.canvas.redraw());
+    this.size = new ResizeObserver(() => this.fit());
+    this.size.observe(this.area);
+    this.ignoreScheme = onSchemeChange(() => this.canvas.redraw());
     bindKeys(this);
     bindTouch(this);
   }
@@ -74,6 +75,13 @@ class Plot {
   findHeights(low, high) {
     const values = [low, high, ...(this.content.levels ?? []).flatMap(({ lower, upper }) => [lower, upper])].filter(Number.isFinite);
     return values.length ? uPlot.rangeNum(Math.min(...values), Math.max(...values), 0.1, true) : [null, null];
+  }
+
+  /** Release the plot before another one takes its place. */
+  remove() {
+    this.size.disconnect();
+    this.ignoreScheme();
+    this.canvas.destroy();
   }
 
   /** Fit the canvas to the width of the page. */

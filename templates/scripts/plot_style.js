@@ -37,7 +37,9 @@ function axis(label, size) {
   };
 }
 
-/** Call a function whenever the reader's system changes between the light and the dark scheme. */
+/** Call a function whenever the reader's system changes between the light and the dark scheme, until the returned one is called. */
 function onSchemeChange(redraw) {
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+  const scheme = matchMedia("(prefers-color-scheme: dark)");
+  scheme.addEventListener("change", redraw);
+  return () => scheme.removeEventListener("change", redraw);
 }

@@ -25,6 +25,7 @@ PANELS: dict[str, dict[str, str]] = {
         "simulate": "Simulate a case and write its record.",
         "readings": "Grade a record or case under every documented reading.",
         "view": "Show a passage or mass drops as moving pictures.",
+        "explore": "Change inputs by sliders in a browser and see the passage.",
     },
     "write": {
         "new": "Write a commented, valid input file to start from.",

@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 import typer
 
 FLAGS: Mapping[str, tuple[tuple[str, ...], str]] = {
-    "verbose": (("--verbose", "-v"), "Print details, and the steps of the computation to standard error."),
+    "verbose": (("--verbose", "-v"), "Print details, and the steps to standard error."),
     "quiet": (("--quiet", "-q"), "Print only errors and the verdict line."),
     "json": (("--json",), "Print the result as one JSON object, for programs."),
     "no_color": (("--no-color",), "Print without colour and bold text."),

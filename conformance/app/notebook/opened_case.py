@@ -202,14 +202,16 @@ def build_case(folder: str | Path, line: Part, pantographs: Sequence[Part], **ke
         pantographs: Pantographs in running order, given as the line is.
         **keys: Further keys of the case file, for example `speed_km_h=250` and `evaluated_spans=[5, 6]`. Default `id`:
             `own/` and the name of the folder; default `title`: the id. `uplift_force_N` is the lift force of every
-            pantograph.
+            pantograph; `pantograph` has a table of further keys for each of them.
 
     Raises:
         InputError: A file cannot be written, or the case, the line or a pantograph is invalid.
     """
     place = Path(folder)
     name = keys.get("id", f"own/{place.resolve().name}")
-    uses = [{"model": _place(part, place / f"pantograph-{i}.toml")} for i, part in enumerate(pantographs, 1)]
+    models = [{"model": _place(part, place / f"pantograph-{i}.toml")} for i, part in enumerate(pantographs, 1)]
+    tables = keys.pop("pantograph", [{}] * len(models))
+    uses = [{**table, **model} for table, model in zip(tables, models, strict=True)]
     if "uplift_force_N" in keys:
         uses = [use | {"uplift_force_N": keys["uplift_force_N"]} for use in uses]
     stated = {key: value for key, value in keys.items() if key != "uplift_force_N"}

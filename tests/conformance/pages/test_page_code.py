@@ -15,7 +15,9 @@ from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.page_code import (
     CHOICE_SCRIPTS,
     CURVE_SCRIPTS,
+    EXPLORE_SCRIPTS,
     TABLE_SCRIPTS,
+    read_explorer_code,
     read_plain_code,
     read_results_code,
     read_scene_code,
@@ -41,7 +43,9 @@ def test_library_for_plots_is_the_released_one_with_its_licence(page_text: str) 
 
 
 def test_every_part_of_the_script_is_used_once_and_packed() -> None:
-    parts = [f"{name}.js" for name in (*TABLE_SCRIPTS, *CHOICE_SCRIPTS, *CURVE_SCRIPTS)]
+    pages = [(*TABLE_SCRIPTS, *CHOICE_SCRIPTS, *CURVE_SCRIPTS), ("elements", *EXPLORE_SCRIPTS)]
+    assert all(len(set(parts)) == len(parts) for parts in pages)
+    parts = {f"{name}.js" for page in pages for name in page}
     assert sorted(parts) == sorted(path.name for path in (TEMPLATES / "scripts").iterdir())
     project = tomllib.loads((TEMPLATES.parent / "pyproject.toml").read_text("utf-8"))
     patterns = project["tool"]["setuptools"]["package-data"]["pantocheck.templates"]
@@ -51,12 +55,17 @@ def test_every_part_of_the_script_is_used_once_and_packed() -> None:
 
 
 def test_script_cannot_end_its_element_and_makes_no_markup_from_text() -> None:
-    for code in (read_plain_code(), read_scene_code(), read_results_code()):
+    for code in (read_plain_code(), read_scene_code(), read_results_code(), read_explorer_code()):
         assert not [text for text in (*code.scripts, *code.styles) if re.search("</(?:script|style)|<!--", text, re.I)]
     # Texts of results enter the page as text nodes; code is not made from text.
-    own = read_results_code().scripts[-1]
-    assert not re.findall(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function|srcdoc", own)
-    assert not re.findall(r"\bfetch\(|XMLHttpRequest|WebSocket|EventSource|sendBeacon|\bimport\(", own)
+    own, explorer = (code.scripts[-1] for code in (read_results_code(), read_explorer_code()))
+    markup = r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function|srcdoc"
+    requests = r"\bfetch\(|XMLHttpRequest|WebSocket|EventSource|sendBeacon|\bimport\("
+    assert not re.findall(markup, own + explorer)
+    assert not re.findall(requests, own)
+    assert re.findall(requests, explorer) == ["fetch("]  # to its own server, by the policy of the page
+    assert "connect-src 'self'" in read_explorer_code().policy
+    assert "connect-src" not in read_results_code().policy
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="needs Node.js")

@@ -76,7 +76,7 @@ ELSEWHERE = (
     *("comparison/static_record", "comparison/run_comparison", "comparison/compared_run", "pages/campaign"),
     *("pages/ci_reports", "pages/comparison_page", "pages/damping_page", "pages/identification", "pages/population"),
     *("pages/pantograph_pages", "pages/record_figures", "pages/run_comparison_page", "pages/site_pages"),
-    "pages/view_page",
+    *("pages/view_page", "pages/explore_page"),
     *("network/", "pages/network_page", "runs/line_fmu", "runs/rig_"),
     *("pages/static_sections", "pages/translation", "pages/report_writers", "quantities/registry"),
     *("quantities/quantity.py", "records/record.py", "records/record_reading", "records/record_sidecar"),

@@ -1,0 +1,1 @@
+"""Explorer: a page on this machine whose sliders run the simulator."""

@@ -1,0 +1,132 @@
+// Explorer: the page itself, which follows the sliders, keeps a setting for comparison, and saves settings as files.
+
+/** A field with its label. */
+function field(label, input) {
+  return element("label", { class: "field" }, `${label} `, input);
+}
+
+/** Explorer of one case. */
+class Explorer {
+  constructor() {
+    this.controls = new Controls(results.sliders, () => this.run());
+    this.status = element("p", { class: "readout", role: "status" });
+    this.command = element("code", {});
+    this.keep = element("button", { type: "button" }, "Keep as setting 2");
+    this.keep.addEventListener("click", () => this.keepSetting());
+    this.drop = element("button", { type: "button", hidden: "" }, "Remove setting 2");
+    this.drop.addEventListener("click", () => this.dropSetting());
+    const tools = element("div", { class: "tools" }, ...this.controls.tools, this.keep, this.drop);
+    openPart("inputs").append(this.controls.element, tools, this.status, element("p", { class: "small" }, "The same inputs, graded: ", this.command));
+    [this.values, this.bands] = ["values", "bands"].map(openPart);
+    [this.forces, this.pictures] = [new ForcePart(), new PicturePart()];
+    openPart("save").append(...(results.can_save ? this.makeForms() : ["Start the command with --out FOLDER to save settings."]));
+  }
+
+  /** Simulate the setting of the sliders, show its values, then its moving picture. */
+  async run() {
+    this.request?.abort();
+    this.request = new AbortController();
+    const { signal } = this.request;
+    this.status.textContent = "Simulating …";
+    document.body.setAttribute("aria-busy", "true");
+    try {
+      const passage = await ask("/simulate", { values: this.controls.values }, signal);
+      const earlier = results.cases[0]?.motion;
+      this.show(passage);
+      this.status.textContent = `Simulated in ${formatNumber(passage.computing_s, 2)} s. Drawing the moving picture …`;
+      const motion = await ask("/film", { number: passage.number }, signal);
+      results.cases[0] = { ...results.cases[0], motion };
+      if (motion || earlier) await this.pictures.show(0);
+      this.status.textContent = `Simulated in ${formatNumber(passage.computing_s, 2)} s. ${this.countOutside()}`;
+    } catch (error) {
+      if (error.name === "AbortError" || error.isReplaced) return;
+      const kept = results.cases.length ? " The page shows the last setting that was simulated." : "";
+      this.status.textContent = `${error.message}${kept}`;
+    }
+    document.body.removeAttribute("aria-busy");
+  }
+
+  /** Number of values outside of their limits, in words. */
+  countOutside() {
+    const limited = results.cases[0].criteria.filter(({ is_inside: inside }) => inside !== null);
+    if (!limited.length) return "The case has no limits.";
+    return `${limited.filter(({ is_inside: inside }) => !inside).length} of ${limited.length} values lie outside of the limits.`;
+  }
+
+  /** Show a passage as setting 1, beside the kept one. */
+  show(passage) {
+    const motion = results.cases[0]?.motion ?? null;
+    const count = Object.keys(passage.traces).length;
+    results.cases[0] = { ...passage, motion, run: { ...passage.run, count } };
+    this.command.textContent = passage.command;
+    this.redraw();
+  }
+
+  /** Draw values, bands and forces of the settings. */
+  redraw() {
+    const [shown, kept] = results.cases;
+    shown.reference = layOver(shown, kept);
+    const settings = kept ? [shown, kept] : [shown];
+    this.values.replaceChildren(makeValueTable(settings));
+    const owners = Object.keys(shown.traces);
+    const captions = owners.length > 1 ? owners.map((owner) => element("p", {}, `Pantograph ${owner}`)) : [];
+    this.bands.replaceChildren(...owners.flatMap((owner, i) => [...captions.slice(i, i + 1), makeBars(settings, Number(owner))]));
+    this.forces.show();
+  }
+
+  /** Keep setting 1 for comparison. */
+  async keepSetting() {
+    if (!results.cases[0]) return;
+    results.cases[1] = { ...results.cases[0], reference: null };
+    this.drop.hidden = false;
+    this.redraw();
+    await this.pictures.show(1);
+  }
+
+  dropSetting() {
+    results.cases.length = 1;
+    this.drop.hidden = true;
+    this.pictures.remove(1);
+    this.redraw();
+  }
+
+  /** Forms that save the setting as a case, and a campaign around it. */
+  makeForms() {
+    const name = (text) => element("input", { type: "text", value: text, maxlength: "60", required: "" });
+    const [caseName, campaignName] = [name("explored-case"), name("explored-campaign")];
+    const varied = element("select", {}, ...results.sliders.map(({ id, label }) => element("option", { value: id }, label)));
+    const [first, last, count] = ["", "", "9"].map((value) => element("input", { type: "number", step: "any", value, required: "" }));
+    const fill = () => {
+      const slider = results.sliders.find(({ id }) => id === varied.value);
+      [first.value, last.value] = [slider.low, slider.high];
+    };
+    varied.addEventListener("change", fill);
+    fill();
+    const range = () => ({ varied: varied.value, first: Number(first.value), last: Number(last.value), count: Math.round(Number(count.value)) });
+    return [
+      this.makeForm("/case", "Save as case", [field("Name of the folder", caseName)], () => ({ name: caseName.value })),
+      this.makeForm(
+        ...["/campaign", "Save as campaign"],
+        [field("Name of the file", campaignName), field("varied", varied), field("from", first), field("to", last), field("values", count)],
+        () => ({ name: campaignName.value, ...range() }),
+      ),
+    ];
+  }
+
+  makeForm(path, label, fields, read) {
+    const answer = element("p", { class: "small", role: "status" });
+    const form = element("form", { class: "tools", "aria-label": label }, ...fields, element("button", { type: "submit" }, label));
+    form.addEventListener("submit", async (event) => {
+      event.preventDefault();
+      try {
+        const { file, command } = await ask(path, { values: this.controls.values, ...read() });
+        answer.replaceChildren(`Written: ${file}. Run it: `, element("code", {}, command));
+      } catch (error) {
+        answer.textContent = error.message;
+      }
+    });
+    return element("div", {}, form, answer);
+  }
+}
+
+new Explorer().run();
