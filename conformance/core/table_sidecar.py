@@ -20,12 +20,12 @@ from pantocheck.conformance.core.units import convert_key, find_unit, suggest_ke
 TableName = Annotated[str, Field(min_length=1, max_length=500, description="name of the table beside the sidecar")]
 
 
-def find_table_name_problems(name: str) -> Problems:
+def find_table_name_problems(name: str, key: str = "file") -> Problems:
     """Problem of a name of a table that is a path."""
     # On Windows, `C:table.csv` is a path, too; the same record must be valid on all systems.
     if "/" in name or "\\" in name or name in {".", ".."} or "\0" in name or PureWindowsPath(name).drive:
         yield validation_problem(
-            "file", f"found the path {name!r}", "Put the table beside its sidecar, and give its name only."
+            key, f"found the path {name!r}", "Put the table beside its sidecar, and give its name only."
         )
 
 

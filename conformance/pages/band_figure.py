@@ -114,8 +114,8 @@ def _list_bar(bar: BandBar, x: float, scale: float, *, named: bool) -> Iterator[
     left, fill = x - BAR / 2, SHADES[(bar.owner - 1) % 3]
     if bar.limits is not None:
         low, high = bar.limits
-        parts = (at(low) - at(high), at(high), x - BAR / 2 - 7, BAR + 14)
-        yield '<rect height="{:.2f}" y="{:.2f}" x="{:.2f}" width="{:g}" fill="{}"/>'.format(*parts, LIMIT_FILL)
+        height = f'height="{at(low) - at(high):.2f}" y="{at(high):.2f}"'
+        yield f'<rect {height} x="{left - 7:.2f}" width="{BAR + 14:g}" fill="{LIMIT_FILL}"/>'
     look = f'fill="{fill}"' if bar.supported else f'fill="white" stroke="{GREY}" stroke-dasharray="3 2"'
     top = at(bar.value)
     yield f'<rect x="{left:.2f}" y="{top:.2f}" width="{BAR:g}" height="{FOOT - top:.2f}" {look}/>'

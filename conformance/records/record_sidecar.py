@@ -14,6 +14,7 @@ from pantocheck.conformance.core.sourced_table import (
     cross_check,
     validation_problem,
 )
+from pantocheck.conformance.core.table_sidecar import TableName, find_table_name_problems
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import suggest_key
 from pantocheck.conformance.records.column_values import ColumnSource, SensorSum
@@ -71,6 +72,13 @@ class RecordSidecar(PassageTable, ColumnFile):
     """Ends of the analysis section as kilometres of the line, instead of evaluated_m."""
     support_km: NumberList | None = None
     """Kilometres of these supports, instead of support_position_m."""
+    shapes: TableName | None = None
+    """HDF5 file beside the sidecar with shapes of the wires, for the moving picture; it is not graded."""
+
+    @cross_check
+    def _check_shapes(self) -> Problems:
+        if self.shapes is not None:
+            yield from find_table_name_problems(self.shapes, "shapes")
 
     @cross_check
     def _check_kilometres(self) -> Problems:

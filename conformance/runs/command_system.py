@@ -16,6 +16,7 @@ from pantocheck.conformance.core.sourced_table import PROVENANCE
 from pantocheck.conformance.core.table_sidecar import record_digest
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw
 from pantocheck.conformance.records.sidecar_tables import RunTable
+from pantocheck.conformance.runs.delivered_film import film_delivery
 from pantocheck.conformance.runs.derived_values import build_derived
 from pantocheck.conformance.runs.program import Program, ProgramFailed, split_arguments
 from pantocheck.conformance.runs.protocol_messages import (
@@ -180,6 +181,13 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
         raise DeliveryRefused(f"the sidecar names the table {sidecar.file!r}, the answer {answer.record.table.file!r}")
     if sidecar.case != case.id:
         raise DeliveryRefused(f"the record is of case {sidecar.case!r}; expected {case.id!r}")
+    film = None
+    if answer.record.shapes is not None and not case.is_static:
+        shapes = _check_file(answer.record.shapes, folder)
+        if sidecar.shapes is None or sidecar_path.parent / sidecar.shapes != shapes:
+            found = f"the sidecar names the shapes {sidecar.shapes!r}, the answer {answer.record.shapes.file!r}"
+            raise DeliveryRefused(found)
+        film = film_delivery(case, record, shapes)
     run = sidecar.run
     if run.wall_s is None:
         run = run.model_copy(update={"wall_s": wall})
@@ -192,6 +200,8 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
         case_digest=sidecar.case_digest,
         digest=record_digest(sidecar_path, table_path),
         start=sidecar.start,
+        line_shape=None if film is None else film.line_shape,
+        motion=None if film is None else film.motion,
     )
 
 

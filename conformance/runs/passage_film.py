@@ -178,7 +178,13 @@ def _code_motion(
         step_s=round(float(nth_frame * (time[1] - time[0])), 9),
         speed_m_s=case.speed,
         pantographs=[
-            _code_pantograph(case, number, part, record, at[::nth_frame], frames.unknowns[::nth_frame, number - 1])
+            code_pantograph(
+                number,
+                part,
+                record,
+                at[::nth_frame],
+                *_list_masses(case, record, at[::nth_frame], frames.unknowns[::nth_frame, number - 1], number),
+            )
             for number, part in signals.items()
         ],
         **vars(coded),
@@ -187,18 +193,16 @@ def _code_motion(
 
 def code_line(line: DiscretisedLine, stretch: FilmedStretch, frames: Frames, form: CodedForm) -> CodedLine:
     """Code the wires and droppers of a picture in one form."""
-    step_mm, nth_frame, nth_station = form.step_mm, form.nth_frame, form.nth_station
+    nth_frame = form.nth_frame
     x = line.mesh.position[list(stretch.request.stations)]
     wires, errors = [], []
     for (curve, _), (start, end), rise in zip(
         stretch.wires, stretch.ends, np.moveaxis(frames.displacement, 1, 0), strict=True
     ):
         inside = np.flatnonzero((x >= start - 1e-6) & (x <= end + 1e-6))
-        chosen = np.union1d(inside[::nth_station], inside[-1:])
-        field = code_field(1e3 * rise[::nth_frame, chosen], step_mm)
-        wires.append(MovingWire(curve=curve, x_m=[round(float(p), 3) for p in x[chosen]], rise_mm=field))
-        along = np.array([np.interp(x[inside], x[chosen], row) for row in field.decode()])
-        errors.append(np.nanmax(np.abs(along - 1e3 * rise[::nth_frame, inside]), initial=0.0))
+        wire, error = code_wire(curve, x[inside], rise[:, inside], form)
+        wires.append(wire)
+        errors.append(error)
     dropper = np.flatnonzero(line.connectors.unilateral)
     place = line.mesh.position[line.connectors.station[dropper]]
     dropper = dropper[(place >= x[0]) & (place <= x[-1])]
@@ -211,17 +215,32 @@ def code_line(line: DiscretisedLine, stretch: FilmedStretch, frames: Frames, for
     )
 
 
-def _code_pantograph(
-    case: Case, number: int, signals: PantographSignals, record: Record, at: Samples, unknowns: RealArray
-) -> MovingPantograph:
-    """Masses and forces of a pantograph at the samples of the record of the frames."""
-    chain, row = case.pantographs[number - 1].chain, number - 1
-    head = None if record.contact_height is None else record.contact_height[row, at][:, None]
-    names: Sequence[str] = ()
-    heights = head if head is not None else unknowns[:, :1]
+def code_wire(curve: int, x: RealArray, rise: RealArray, form: CodedForm) -> tuple[MovingWire, float]:
+    """Code the rises of a wire, (frames, points) [m], in one form; and the error of the coding [mm]."""
+    last = x.size - 1
+    chosen = np.union1d(np.arange(0, x.size, form.nth_station), [last])
+    field = code_field(1e3 * rise[:: form.nth_frame, chosen], form.step_mm)
+    along = np.array([np.interp(x, x[chosen], row) for row in field.decode()])
+    error = float(np.nanmax(np.abs(along - 1e3 * rise[:: form.nth_frame]), initial=0.0))
+    return MovingWire(curve=curve, x_m=[round(float(p), 3) for p in x[chosen]], rise_mm=field), error
+
+
+def _list_masses(
+    case: Case, record: Record, at: Samples, unknowns: RealArray, number: int
+) -> tuple[Sequence[str], RealArray]:
+    """Names and heights [m] of the masses of a chain; of another pantograph, the head."""
+    chain = case.pantographs[number - 1].chain
     if chain is not None:
         names = chain.names or [f"mass {n}" for n, _ in enumerate(chain.masses_kg, 1)]
-        heights = unknowns[:, : len(chain.masses_kg)]
+        return names, unknowns[:, : len(chain.masses_kg)]
+    return (), unknowns[:, :1] if record.contact_height is None else record.contact_height[number - 1, at][:, None]
+
+
+def code_pantograph(
+    number: int, signals: PantographSignals, record: Record, at: Samples, names: Sequence[str], heights: RealArray
+) -> MovingPantograph:
+    """Masses with their heights [m] and forces of a pantograph at the samples of the record of the frames."""
+    row = number - 1
     try:
         band = signals.band_part(EXTENDED_BAND.low, EXTENDED_BAND.high)
     except QuantityUnavailable:

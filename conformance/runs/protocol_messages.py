@@ -143,6 +143,8 @@ class RecordFiles(InputTable):
 
     sidecar: File
     table: File
+    shapes: File | None = None
+    """Shapes of the wires, which the sidecar names; null: none."""
 
 
 class DeliveredAnswer(InputTable):

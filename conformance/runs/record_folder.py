@@ -10,7 +10,7 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.table_sidecar import record_digest
+from pantocheck.conformance.core.table_sidecar import locate_table, record_digest
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.line.library_folder import library_folder
@@ -20,6 +20,7 @@ from pantocheck.conformance.records.record import SPEED_TOLERANCE, Record
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
+from pantocheck.conformance.runs.delivered_film import film_delivery
 from pantocheck.conformance.runs.system import Delivered, Errored, Outcome, Skipped, note_case_version
 
 
@@ -43,8 +44,11 @@ class RecordFolder:
         if isinstance(opened, RecordSummary):
             return _deliver_summary(opened, case, record_digest(path))
         record, sidecar = read_case_record(path, case)
+        film = None if sidecar.shapes is None else film_delivery(case, record, locate_table(path, sidecar.shapes, None))
         return Delivered(
             record,
+            line_shape=None if film is None else film.line_shape,
+            motion=None if film is None else film.motion,
             run=sidecar.run,
             start=sidecar.start,
             notes=note_case_version(sidecar.case_digest),

@@ -24,7 +24,7 @@ const WIRE_WIDTHS = { contact_wire: 2.4, messenger_wire: 1.5, stitch_wire: 1 };
 
 /** Scene of a moving line: draws on the canvas of a view. */
 class PassageScene {
-  constructor(canvas, shownCase, passage, others) {
+  constructor(canvas, shownCase, passage, others = []) {
     Object.assign(this, { canvas, passage, others, case: shownCase, signals: listSignals(shownCase, passage, others) });
     const places = passage.wires.flatMap(({ curve }) => [curve.x_m[0], curve.x_m.at(-1)]);
     this.whole = [Math.min(...places), Math.max(...places)];

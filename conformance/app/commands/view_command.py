@@ -28,6 +28,7 @@ from pantocheck.conformance.pages.view_page import build_drop_view, build_view
 from pantocheck.conformance.results.results_format import Results, SystemIdentity
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runs.reference_simulator import FilmingSimulator
+from pantocheck.conformance.runs.system import Delivered
 
 
 def view_command(
@@ -45,7 +46,7 @@ def view_command(
 ) -> CommandOutput:
     """Show a passage or mass drops as moving pictures.
 
-    A record has the force and the uplift alone: it holds no shapes of the wires. Nothing is judged: the exit code is 0.
+    A record without shapes of the wires has the force and the uplift alone. Nothing is judged: the exit code is 0.
 
     Examples:
 
@@ -100,6 +101,6 @@ def _build_single(subject: str, changed: list[str], catalogue: Catalogue) -> Res
     case, outcome = open_subject(subject, changed, catalogue, simulator.run)
     result = grade_case(case, outcome, "secondary")
     identity = identify_system(simulator)
-    if result.line_shape is None:
+    if isinstance(outcome, Delivered) and outcome.digest is not None:
         identity = SystemIdentity(name=Path(subject).name, version="", kind="record")
     return build_results([result], identity, "secondary", utc_now())
