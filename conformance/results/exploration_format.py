@@ -87,5 +87,7 @@ class Exploration(ResultsPart):
     sliders: list[Slider]
     can_save: bool
     """Whether a folder for saved settings is named."""
+    waiting: str
+    """Sentence while the first passage is simulated; empty: it takes no longer than others."""
     cases: list[ExploredPassage] = Field(default_factory=list)
     """Passages on the page: setting 1, and 2 where it is kept."""

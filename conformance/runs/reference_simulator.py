@@ -161,11 +161,16 @@ def estimate_work(case: Case) -> float:
     return cells * max(len(case.pantographs), 1) * sum(_plan_steps(case).weights.values()) / 1e6
 
 
+def needs_compilation() -> bool:
+    """Whether the next passage compiles the simulator first."""
+    core = choose_core()
+    return core.library is None and core.is_compiled and not has_kept_kernels()
+
+
 def _begin_run(case: Case, steps: StepSequence) -> ShareCallback:
     """Begin the run on the mesh of the case; the first run of all shows its compilation until its time steps begin."""
     progress = steps.begin(OWN_MESH)
-    core = choose_core()
-    if not case.is_static and core.library is None and core.is_compiled and not has_kept_kernels():
+    if not case.is_static and needs_compilation():
         _LOGGER.warning("%s", COMPILATION)
         steps.begin(COMPILATION)
     return progress

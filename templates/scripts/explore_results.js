@@ -118,6 +118,7 @@ class PicturePart {
   async show(number) {
     const shown = results.cases[number];
     if (!shown?.motion) return this.remove(number);
+    this.views[number]?.figure.classList.remove("outdated");
     if (this.views[number]) return this.views[number].change(caseOf(this.views[number].figure));
     const figure = makeFigure(number);
     const view = new PassageView(figure);
@@ -129,6 +130,11 @@ class PicturePart {
     if (!number) return;
     view.followed.value = this.views[0].followed.value;
     view.pause(this.views[0].time);
+  }
+
+  /** Mark the picture of an earlier setting until that of the present one is there. */
+  outdate(number) {
+    this.views[number]?.figure.classList.add("outdated");
   }
 
   /** Remove the picture of a setting. */

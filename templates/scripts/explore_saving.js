@@ -27,16 +27,15 @@ class Explorer {
     this.request?.abort();
     this.request = new AbortController();
     const { signal } = this.request;
-    this.status.textContent = "Simulating …";
+    this.status.textContent = `Simulating … ${results.cases.length ? "" : results.waiting}`;
     document.body.setAttribute("aria-busy", "true");
     try {
       const passage = await ask("/simulate", { values: this.controls.values }, signal);
-      const earlier = results.cases[0]?.motion;
       this.show(passage);
       this.status.textContent = `Simulated in ${formatNumber(passage.computing_s, 2)} s. Drawing the moving picture …`;
       const motion = await ask("/film", { number: passage.number }, signal);
-      results.cases[0] = { ...results.cases[0], motion };
-      if (motion || earlier) await this.pictures.show(0);
+      results.cases.forEach((setting) => setting.number === passage.number && Object.assign(setting, { motion }));
+      for (const [number, setting] of results.cases.entries()) if (setting.motion === motion) await this.pictures.show(number);
       this.status.textContent = `Simulated in ${formatNumber(passage.computing_s, 2)} s. ${this.countOutside()}`;
     } catch (error) {
       if (error.name === "AbortError" || error.isReplaced) return;
@@ -55,10 +54,10 @@ class Explorer {
 
   /** Show a passage as setting 1, beside the kept one. */
   show(passage) {
-    const motion = results.cases[0]?.motion ?? null;
     const count = Object.keys(passage.traces).length;
-    results.cases[0] = { ...passage, motion, run: { ...passage.run, count } };
+    results.cases[0] = { ...passage, run: { ...passage.run, count } };
     this.command.textContent = passage.command;
+    this.pictures.outdate(0);
     this.redraw();
   }
 

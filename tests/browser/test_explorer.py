@@ -1,6 +1,8 @@
 """The explorer in a browser: sliders redraw, values are those of the simulator, two settings, keys, and refusals."""
 
+import json
 import re
+import shlex
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -8,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from helpers.command_line import pantocheck
 from pantocheck.conformance.app.commands.explore_command import open_explorer
 from pantocheck.conformance.app.explorer.explore_server import ExploreServer
 from pantocheck.conformance.cases.input_changes import parse_changes
@@ -74,14 +77,22 @@ def read_values(page: Any, column: int) -> dict[str, str]:
     }
 
 
+def repeat(page: Any, folder: Path) -> dict[str, float]:
+    """Values of the command that the page shows."""
+    _, *arguments = shlex.split(page.locator("section:has(#inputs) code").inner_text())
+    assert pantocheck(*arguments, "--formats", "json", "--out", folder).exit_code == 3  # a changed case has no limits
+    quantities = json.loads((folder / "results.json").read_text())["cases"][0]["quantities"]
+    return {name: value for owner in quantities.values() for name, value in owner.items() if isinstance(value, float)}
+
+
 def simulate(*texts: str) -> dict[str, float]:
     case = load_case(list_library(library_folder())[CASE], parse_changes(texts))
     values = CaseEvaluation(case, ReferenceSimulator().run_unrefined(case)).evaluation.values
     return {name: value for owner in values for name, value in values[owner].items() if isinstance(value, float)}
 
 
-def test_speed_slider_redraws_and_shows_the_values_of_the_simulator(page: Any) -> None:
-    """The numbers of the page have every bit of those of `simulate` and `run --set`."""
+def test_speed_slider_redraws_and_shows_the_values_of_the_simulator(page: Any, tmp_path: Path) -> None:
+    """The numbers of the page have every bit of those of the simulator, and of the command that it shows."""
     before = page.locator("section:has(#picture) canvas").screenshot()
     curve = page.locator("section:has(#force) canvas").first.screenshot()
     assert {name: float(text) for name, text in read_values(page, 0).items()}.items() <= simulate().items()
@@ -90,6 +101,7 @@ def test_speed_slider_redraws_and_shows_the_values_of_the_simulator(page: Any) -
     shown = {name: float(text) for name, text in read_values(page, 0).items()}
     assert len(shown) > 10
     assert shown.items() <= expected.items()
+    assert shown.items() <= repeat(page, tmp_path / "out").items()
     assert page.locator("section:has(#picture) canvas").screenshot() != before
     assert page.locator("section:has(#force) canvas").first.screenshot() != curve
     assert "--set speed_km_h=290.0" in page.locator("section:has(#inputs)").inner_text()
@@ -114,6 +126,7 @@ def test_slider_follows_the_keys_and_the_case(page: Any) -> None:
 def test_two_settings_stand_side_by_side(page: Any) -> None:
     page.get_by_role("button", name="Keep as setting 2").click()
     change(page, "uplift force [N], exact", 140)
+    assert page.locator(".outdated").count() == 0
     first, second = read_values(page, 0), read_values(page, 1)
     assert float(first["mean_force_N"]) == simulate("pantograph.uplift_force_N=140")["mean_force_N"]
     assert float(second["mean_force_N"]) == simulate()["mean_force_N"]

@@ -22,6 +22,7 @@ from pantocheck.conformance.pages.explore_page import build_explorer
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.results.exploration_format import Exploration
 from pantocheck.conformance.runs.core_requirement import require_core
+from pantocheck.conformance.runs.reference_simulator import COMPILATION, needs_compilation
 
 
 def explore_command(
@@ -80,6 +81,10 @@ def open_explorer(
 
     explored = ExploredCase(load, name, folders, changed)
     exploration = Exploration(
-        id=explored.case.id, title=explored.case.file.title, sliders=explored.sliders, can_save=out is not None
+        id=explored.case.id,
+        title=explored.case.file.title,
+        sliders=explored.sliders,
+        can_save=out is not None,
+        waiting=f"{COMPILATION}." if needs_compilation() else "",
     )
     return explored, render_html(build_explorer(exploration)), out

@@ -43,6 +43,8 @@ def test_saved_case_of_a_user_keeps_his_limits(tmp_path: Path) -> None:
     second = save_case(explore(str(first)), {"speed_km_h": 260.0}, tmp_path, "second")
     (limit,) = load_case(second).limits
     assert (limit.quantity, limit.upper, limit.trust) == ("std_force_N", 25.0, "own")
+    campaign = read_campaign(save_campaign(explore(str(first)), {}, tmp_path, "own", ("speed_km_h", (200.0, 300.0, 2))))
+    assert campaign.file.cases == (str(first.resolve()),)
 
 
 def test_nothing_is_replaced(tmp_path: Path) -> None:
