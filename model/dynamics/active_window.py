@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, max_wave_speed
-from pantocheck.model.dynamics.kernel_compilation import kernel, plain_kernel
+from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.passage import Passage
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.vectors import LANES
@@ -115,7 +115,7 @@ def build_whole_window(line: DiscretisedLine) -> WindowArrays:
     return WindowArrays(line.mesh.position, max_wave_speed(line), math.inf, math.inf, math.inf, math.inf, True, 0.0)
 
 
-@plain_kernel
+@kernel
 def wave_reach(limits: WindowArrays, speed: float, elapsed: Any) -> tuple[Any, Any]:
     """Largest distances behind the last and ahead of the first pantograph that waves can have reached [m].
 
@@ -125,7 +125,7 @@ def wave_reach(limits: WindowArrays, speed: float, elapsed: Any) -> tuple[Any, A
     return front + speed * elapsed, np.maximum(front - speed * elapsed, MIN_HALF_WIDTH)
 
 
-@plain_kernel
+@kernel
 def half_widths(limits: WindowArrays, speed: float, elapsed: Any) -> tuple[Any, Any]:
     """Half-widths of the window behind the last and ahead of the first pantograph at a time after the start [m].
 

@@ -12,13 +12,13 @@ from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.block_tridiagonal import Factor
 from pantocheck.model.dynamics.connector_step import ConnectorArrays
 from pantocheck.model.dynamics.distributed_step import DistributedArrays
-from pantocheck.model.dynamics.kernel_compilation import kernel, plain_kernel
+from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.vectors import LANES, align
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.statics.contact_wires import ContactWires, locate_contact_wires
 
-_find_interval = plain_kernel(find_element)
+_find_interval = kernel(find_element)
 
 
 class IrregularityArrays(NamedTuple):
@@ -45,7 +45,7 @@ def build_irregularity_arrays(wires: Sequence[Wire]) -> IrregularityArrays:
     )
 
 
-@plain_kernel
+@kernel
 def height_of_irregularity(arrays: IrregularityArrays, wire: int, position: float) -> float:
     """Additional height of a contact wire at a position [m]."""
     first, end = arrays.first[wire], arrays.first[wire + 1]

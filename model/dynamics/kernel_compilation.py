@@ -37,10 +37,6 @@ class LateObject:
     def _numba_type_(self) -> Any:
         return import_module("numba.core.registry").cpu_target.typing_context.resolve_value_type(self.built)
 
-    def __call__(self, *arguments: Any) -> Any:
-        """Call the object from Python."""
-        return self.built(*arguments)
-
     def __getattr__(self, name: str) -> Any:
         """Options of the object, which numba reads when it compiles a caller."""
         if name.startswith("__") or name == "built":
@@ -59,15 +55,15 @@ class EntryKernel(LateObject):
         if not core.is_compiled:
             raise UnusableCore(f"the reference kernel is demanded, but {function.__name__} has fast kernels only")
         if (library := core.library) is None:
-            return super().__call__(*arguments)
+            return self.built(*arguments)
         result = call_core(library, function.__name__, arguments)
         return int(result) if function.__annotations__["return"] is int else result
 
 
-class PlainKernel(LateObject):
+class InnerKernel(LateObject):
     """Function that numba compiles for its callers; called from Python, it runs as Python."""
 
-    __wrapped__: FunctionType
+    __wrapped__: Callable[..., Any]
 
     def __call__(self, *arguments: Any) -> Any:
         """Run the function in Python."""
@@ -82,14 +78,14 @@ def bind_arrays(entry: Callable[..., Any], *first: Any) -> Callable[..., Any]:
     return partial(entry, *first if choose_core().library is None else map(pack_argument, first))
 
 
-def _late(kind: type[LateObject], function: Function, **options: Any) -> Any:
+def _late(kind: type[EntryKernel] | type[InnerKernel], function: Function, **options: Any) -> Any:
     late = kind(lambda: import_module("numba").njit(cache=True, _nrt=False, **options)(function))
     return update_wrapper(late, function)
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function of a time step, and keep it for other processes; other threads of Python run meanwhile."""
-    compiled: Function = _late(LateObject, function, nogil=True)
+    """Compile a function of a time step for its callers, and keep it; other threads of Python run meanwhile."""
+    compiled: Function = _late(InnerKernel, function, nogil=True)
     return compiled
 
 
@@ -99,18 +95,12 @@ def entry_kernel(function: Function) -> Function:
     return compiled
 
 
-def plain_kernel(function: Function) -> Function:
-    """Compile a function of numbers for its callers; called from Python, once or with arrays, it runs as Python."""
-    compiled: Function = _late(PlainKernel, function, nogil=True)
-    return compiled
-
-
 def inline_kernel(function: Function) -> Function:
     """Compile a function of a time step as part of its callers.
 
     For functions of vectors, and for those that receive all arrays of a line: a call would copy their descriptions.
     """
-    compiled: Function = _late(LateObject, function, forceinline=True)
+    compiled: Function = _late(InnerKernel, function, forceinline=True)
     return compiled
 
 
@@ -119,7 +109,7 @@ def merged_kernel(function: Function) -> Function:
 
     It is not compiled by itself then, which saves time in the first run after an installation.
     """
-    compiled: Function = _late(LateObject, function, inline="always")
+    compiled: Function = _late(InnerKernel, function, inline="always")
     return compiled
 
 

@@ -9,13 +9,14 @@ The compiler divides a vector into the registers of the processor: one with AVX-
 of the flattened array and are not checked. Numba may fuse a product and a sum, so that they are rounded once.
 """
 
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from pantocheck.model.description.arrays import Array
-from pantocheck.model.dynamics.kernel_compilation import LateObject
+from pantocheck.model.dynamics.kernel_compilation import InnerKernel
 
 LANES = 8
 """Numbers in a vector."""
@@ -23,14 +24,20 @@ ALIGNMENT = 64
 """Address of an aligned array: a multiple of the size of a vector and of a line of the cache [bytes]."""
 
 
-def _function(name: str) -> Any:
-    """Function of vectors, which exists in compiled kernels only."""
-    return LateObject(lambda: getattr(import_module("pantocheck.model.dynamics.vector_code"), name))
+def _vector(name: str, form: Callable[..., Any]) -> Any:
+    """Function of vectors: `vector_code` in compiled kernels, and `form` on arrays of eight numbers in Python."""
+    late = InnerKernel(lambda: getattr(import_module("pantocheck.model.dynamics.vector_code"), name))
+    late.__wrapped__ = form
+    return late
 
 
-load, store, splat = map(_function, ("load", "store", "splat"))
-shift_up, shift_down = map(_function, ("shift_up", "shift_down"))
-lane_sum, transpose = map(_function, ("lane_sum", "transpose"))
+load = _vector("load", lambda array, at: array.reshape(-1)[at : at + LANES].copy())
+store = _vector("store", lambda array, at, v: np.copyto(array.reshape(-1)[at : at + LANES], v))
+splat = _vector("splat", lambda x: np.full(LANES, x))
+shift_up = _vector("shift_up", lambda v, before: np.append(before[-1], v[:-1]))
+shift_down = _vector("shift_down", lambda v, after: np.append(v[1:], after[0]))
+lane_sum = _vector("lane_sum", lambda v: v.reshape(2, 2, 2).sum(0).sum(0).sum(0))
+transpose = _vector("transpose", lambda *vectors: np.array(vectors).T)
 
 
 def round_up(size: int, multiple: int = LANES) -> int:

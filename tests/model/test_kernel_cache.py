@@ -74,7 +74,7 @@ def test_kernels_are_loaded_from_a_read_only_installation_without_home() -> None
     """Another user, who may read everything and write nothing but the folder of temporary files."""
     code = (
         "import os, numpy; from pantocheck.model.dynamics.active_window import search\n"
-        "search(numpy.arange(3.0), 0, 3, 1.0); print(os.environ['NUMBA_CACHE_DIR'])"
+        "search.built(numpy.arange(3.0), 0, 3, 1.0); print(os.environ['NUMBA_CACHE_DIR'])"
     )
     user = [
         "setpriv",
@@ -104,7 +104,7 @@ def test_second_process_loads_the_kernels_of_the_first(tmp_path: Path) -> None:
     code = """
 import numpy as np
 from pantocheck.model.dynamics.active_window import search
-search(np.arange(7.0), 0, 7, 0.5)
+search.built(np.arange(7.0), 0, 7, 0.5)
 print(sum(search.stats.cache_misses.values()), sum(search.stats.cache_hits.values()))
 """
     environment = os.environ | {kernel_cache.VARIABLE: str(tmp_path)}

@@ -1,5 +1,7 @@
 """Vectors of eight numbers: every operation against numpy."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from numba import njit
@@ -20,7 +22,6 @@ from pantocheck.model.dynamics.vectors import (
 )
 
 
-@njit
 def operate(a: Array, out: Array) -> float:
     """Every operation once; `a` holds eight vectors, and the results lie one after the other."""
     v = transpose(load(a, 0), load(a, 8), load(a, 16), load(a, 24), load(a, 32), load(a, 40), load(a, 48), load(a, 56))
@@ -36,10 +37,11 @@ def operate(a: Array, out: Array) -> float:
     return lane_sum(first)
 
 
-def test_every_operation_equals_numpy() -> None:
+@pytest.mark.parametrize("run", [operate, njit(operate)], ids=["in Python", "compiled"])
+def test_every_operation_equals_numpy(run: Callable[[Array, Array], float]) -> None:
     """Whole numbers, so that no result is rounded; loads at any index."""
     a, out = np.random.default_rng(0).integers(-99, 99, 64).astype(np.float64), np.zeros(112)
-    total = operate(a, out)
+    total = run(a, out)
     first, second = a[3:11], a[20:28]
     expected = [a.reshape(8, 8).T.ravel(), first + second, first - second, first * second, np.full(8, a[5])]
     expected += [np.append(second[-1], first[:-1]), np.append(first[1:], second[0])]
