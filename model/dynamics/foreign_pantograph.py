@@ -26,7 +26,7 @@ from pantocheck.model.description.pantograph import ContactStrip, Pantograph, eq
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_workspace
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.passage import Coupling, ForeignPantograph
-from pantocheck.model.dynamics.recording import Recording, advance_once, refuse_divergence
+from pantocheck.model.dynamics.recording import Recording, bind_single_steps, refuse_divergence
 from pantocheck.model.dynamics.train import Train
 
 HEIGHT_TOLERANCE = 1e-9
@@ -227,6 +227,7 @@ def couple_steps(
 ) -> None:
     """Advance line, train and programs by the steps of a recording, and fill it; see `recording.simulate_steps`."""
     work, steps, dt = build_workspace(kernel, train), len(recording.contact), kernel.time_step
+    advance_once = bind_single_steps(kernel, motion, train, work, recording)
     moved: list[Array | Indices] = [motion.w, motion.r, motion.force, motion.active]
     moved += [train.position, train.elapsed, train.z, train.contact, train.joint_force]
     kept = [array.copy() for array in moved]
@@ -238,7 +239,7 @@ def couple_steps(
         for attempt in range(1, ATTEMPTS_PER_STEP + 1):
             for interface, (height, force) in zip(interfaces, maps, strict=True):
                 interface.load(train, dt, height, force)
-            advance_once(kernel, motion, train, work, recording, n)
+            advance_once(n)
             forces = [interface.pressing(train) for interface in interfaces]
             heights = {k: interfaces[k].attempt(forces[k]) for k in repeated}
             seen = [interface.seen_height(train) for interface in interfaces]

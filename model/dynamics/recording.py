@@ -116,28 +116,32 @@ def _rise_at_wires(train: Train, work: Workspace, c: int) -> float:
     return rise
 
 
-def advance_once(
-    kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, recording: Recording, step: int
-) -> None:
-    """Advance line and pantographs, in place, by one step of a recording, and fill it.
+def bind_single_steps(
+    kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, recording: Recording
+) -> Callable[[int], None]:
+    """Function that advances line and pantographs, in place, by one step of a recording, and fills it.
 
     Args:
         kernel, motion, train, recording: As in `simulate_steps`.
         work: Scratch arrays.
-        step: Number of the step, from 0.
 
-    Raises:
-        DidNotConverge: The forces of the step did not converge.
+    Returns:
+        Function of the number of the step, from 0; it raises `DidNotConverge` if the forces did not converge.
     """
-    here = slice(step, step + 1)
-    part = recording._replace(
-        contact=recording.contact[here],
-        height=recording.height[here],
-        motion=recording.motion[here],
-        slack=recording.slack[here],
-    )
-    if _advance(kernel, motion, train, work, np.zeros(1), part) == 0:
-        refuse_divergence(step, kernel.time_step)
+    advance, load = bind_arrays(_advance, kernel, motion, train, work), np.zeros(1)
+
+    def advance_once(step: int) -> None:
+        here = slice(step, step + 1)
+        part = recording._replace(
+            contact=recording.contact[here],
+            height=recording.height[here],
+            motion=recording.motion[here],
+            slack=recording.slack[here],
+        )
+        if advance(load, part) == 0:
+            refuse_divergence(step, kernel.time_step)
+
+    return advance_once
 
 
 def refuse_divergence(steps: int, time_step: float) -> NoReturn:
