@@ -6,6 +6,7 @@ from helpers.lines import Array
 from pantocheck.model import Passage, build_chain
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.motion import end_of_step, motion_at_rest
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.reference_kernel import FullSystem
@@ -42,8 +43,9 @@ def largest_differences(
     work, place = build_workspace(kernel, train), bandwidth_order(line)[system.free]
     computed: dict[str, list[Array]] = {name: [] for name in SCALES}
     expected: dict[str, list[Array]] = {name: [] for name in computed}
+    advance = bind_arrays(step, kernel, motion, train, work)
     for _ in range(steps):
-        assert step(kernel, motion, train, work)
+        assert advance()
         state = system.advance(state, np.zeros(system.size))
         w, r = end_of_step(motion, kernel.layout, kernel.time_step)
         for i, name in enumerate(("q", "v", "a")):

@@ -30,6 +30,7 @@ from pantocheck.model import (
     discretise,
 )
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 
@@ -76,11 +77,12 @@ def simulate(line: DiscretisedLine, start: float, rising: bool) -> RealArray:
         train.z[0, 0, :], train.held[0] = height, 0.0
         carried = float(HEAD.stiffness[0].sum()) * height
     work, force = build_workspace(kernel, train), np.zeros(steps)
+    advance = bind_arrays(step, kernel, motion, train, work)
     for n in range(steps):
         if rising:
             share = (1 - np.cos(np.pi * min((n + 1) * STEP / RAMP_S, 1.0))) / 2
             train.force[0, 0] = carried + share * (HEAD.static_force - carried)
-        if not step(kernel, motion, train, work):
+        if not advance():
             raise SimulationError("the forces of a time step did not converge")
         force[n] = train.contact.sum()
     position = start + SPEED * STEP * np.arange(1, steps + 1)

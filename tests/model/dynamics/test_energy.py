@@ -10,6 +10,7 @@ from helpers.lines import Array, fix_along_track, simple_line
 from pantocheck.model.description.catenary import Kind, Rayleigh
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.motion import Motion, build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.reference_kernel import remove_connectors
@@ -44,6 +45,7 @@ def free_decay(line: DiscretisedLine, time_step: float, steps: int) -> tuple[Arr
     motion = _release(line, kernel, load)
     work = build_workspace(kernel, train)
     energy, tensions = [], np.zeros((steps, stiffness.size))
+    advance = bind_arrays(step, kernel, motion, train, work)
     for n in range(steps):
         if n % EVERY == 0:
             w, r = end_of_step(motion, kernel.layout, time_step)
@@ -53,7 +55,7 @@ def free_decay(line: DiscretisedLine, time_step: float, steps: int) -> tuple[Arr
             bars_store = (tension**2 - preload**2) / (2 * stiffness) - preload * (bars.T @ q)
             stretched = line.stretches.stiffness @ (stretches.T @ q) ** 2 / 2
             energy.append(v @ mass @ v / 2 + q @ matrices.stiffness @ q / 2 + bars_store.sum() + stretched)
-        assert step(kernel, motion, train, work)
+        assert advance()
         tensions[n] = motion.force[: stiffness.size]
     return np.array(energy), tensions
 

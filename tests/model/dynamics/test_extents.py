@@ -11,6 +11,7 @@ from pantocheck.model import Catenary, Clamp, Kind, Passage, Wire, discretise
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.extents import active_run, clip_extent, find_extents, find_runs, merge_extents
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
@@ -84,8 +85,9 @@ def test_stations_without_a_wire_never_move() -> None:
     kernel, passage = build_kernel_arrays(line, 1e-3), Passage((PANTOGRAPH_2002,), (105.0,), 60.0, 1.5, 1e-3)
     motion, train = start_motion(line, kernel, passage)
     work = build_workspace(kernel, train)
+    advance = bind_arrays(step, kernel, motion, train, work)
     for _ in range(1500):
-        assert step(kernel, motion, train, work)
+        assert advance()
     covered = np.zeros(line.beams.free.shape[:2], dtype=np.bool_)
     for row, first, last in plain_extents(line.catenary, 2.0):
         covered[row, first : last + 1] = True

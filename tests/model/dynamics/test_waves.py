@@ -7,6 +7,7 @@ from helpers.lines import Array, bare_wire
 from pantocheck.model.description.pantograph import Pantograph
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.motion import build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.passage import Passage
@@ -35,8 +36,9 @@ def test_pulse_follows_the_exact_dispersion_relation(bending_stiffness: float, d
     motion = build_motion(kernel.layout, dt, (at_start[:, :1], at_start[:, 1:]), np.zeros(0))
     train = build_empty_train(1)
     work = build_workspace(kernel, train)
+    advance = bind_arrays(step, kernel, motion, train, work)
     for _ in range(steps):
-        assert step(kernel, motion, train, work)
+        assert advance()
     deflection = end_of_step(motion, kernel.layout, dt)[0][0, 0]
     error = np.abs(deflection - at_end[0, 0]).max() / 0.01
     assert error < 3e-4
@@ -75,10 +77,11 @@ def test_moving_load_on_a_long_string_follows_dalembert(share: float, tolerance:
     motion, train = start_motion(line, kernel, passage)
     work = build_workspace(kernel, train)
     steps = round(duration / dt)
+    advance = bind_arrays(step, kernel, motion, train, work)
     for n in range(1, steps + 1):
         train.z[:] = 0.0
         train.z[0, 0, 0] = ramp(n * dt) / soft
-        assert step(kernel, motion, train, work)
+        assert advance()
         assert train.contact[0, 0] == pytest.approx(float(ramp(n * dt)), rel=0, abs=2e-6)
     t, c, place = steps * dt, SPEED_OF_WAVES, line.mesh.position - origin
     retarded = np.where(place < speed * t, (c * t + place) / (c + speed), (c * t - place) / (c - speed))

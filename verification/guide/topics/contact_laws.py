@@ -18,6 +18,7 @@ from pantocheck.model.description.head_structure import (
 )
 from pantocheck.model.discretisation.discretised_line import make_droppers_bilateral
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
@@ -144,8 +145,9 @@ def impact_error(element: float, dt: float) -> tuple[float, float]:
     train.z[1], gap = _SPEED, 2.37e-3
     train.z[0] -= gap
     time, force = dt * np.arange(1, round(0.06 / dt) + 1), []
+    advance = bind_arrays(step, kernel, motion, train, work)
     for _ in time:
-        if not step(kernel, motion, train, work):
+        if not advance():
             raise SimulationError("the forces of a time step did not converge")
         force.append(float(train.contact[0, 0]))
     impedance, since = 2 * np.sqrt(WIRE_TENSION * WIRE_MASS), time - gap / _SPEED
@@ -237,8 +239,9 @@ def _states(line: DiscretisedLine, head: Pantograph, dt: float) -> Iterator[_Sta
     work, matrices, mass = build_workspace(kernel, train), assemble_matrices(line), correct_mass(line, dt)
     place, row = bandwidth_order(line)[matrices.free], line.contact_rows[0]
     rest = line.state.deflection.ravel()[bandwidth_order(line)]
+    advance = bind_arrays(step, kernel, motion, train, work)
     for _ in range(round(way.duration / dt)):
-        if not step(kernel, motion, train, work):
+        if not advance():
             raise SimulationError("the forces of a time step did not converge")
         w, r = end_of_step(motion, kernel.layout, dt)
         q, v = (np.stack([w[i], r[i]], axis=-1).ravel()[place] for i in range(2))

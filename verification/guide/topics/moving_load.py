@@ -6,6 +6,7 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Chart, Series
 from pantocheck.model import Pantograph, Passage, SimulationError, discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
@@ -63,10 +64,11 @@ def simulate_moving_load(speed: float) -> tuple[RealArray, RealArray]:
     motion, train = start_motion(line, kernel, Passage((heavy,), (0.0,), speed, steps * _TIME_STEP, _TIME_STEP))
     work = build_workspace(kernel, train)
     deflection = np.empty(steps)
+    advance = bind_arrays(step, kernel, motion, train, work)
     for n in range(steps):
         train.z[:] = 0.0
         train.z[0, 0, 0] = _FORCE / _SOFT
-        if not step(kernel, motion, train, work):
+        if not advance():
             raise SimulationError("the forces of a time step did not converge")
         element, length, s = find_element(line.mesh.position, speed * (n + 1) * _TIME_STEP)
         w, r = end_of_step(motion, kernel.layout, _TIME_STEP)

@@ -14,6 +14,7 @@ from pantocheck.model import (
     make_droppers_bilateral,
 )
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
@@ -112,8 +113,10 @@ def measure_balances(line: DiscretisedLine, passage: Passage) -> PassageBalance:
             float(train.contact.sum()),
         )
 
+    take_step = bind_arrays(step, kernel, motion, train, work)
+
     def advance() -> "_State":
-        if not step(kernel, motion, train, work):
+        if not take_step():
             raise SimulationError("the forces of a time step did not converge")
         return state()
 

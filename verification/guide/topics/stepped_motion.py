@@ -5,6 +5,7 @@ import numpy as np
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.model import DiscretisedLine, SimulationError
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
+from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.motion import build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.train import build_empty_train
@@ -30,8 +31,9 @@ def advance_freely(
     motion = build_motion(kernel.layout, time_step, fields, line.connectors.preload)
     work = build_workspace(kernel, train)
     rows = []
+    advance = bind_arrays(step, kernel, motion, train, work)
     for n in range(1, steps + 1):
-        if not step(kernel, motion, train, work):
+        if not advance():
             raise SimulationError("the forces of a time step did not converge")
         if n % every == 0:
             rows.append(end_of_step(motion, kernel.layout, time_step)[0][0, 0].copy())
