@@ -31,13 +31,16 @@ def _vector(name: str, form: Callable[..., Any]) -> Any:
     return late
 
 
-load = _vector("load", lambda array, at: array.reshape(-1)[at : at + LANES].copy())
-store = _vector("store", lambda array, at, v: np.copyto(array.reshape(-1)[at : at + LANES], v))
-splat = _vector("splat", lambda x: np.full(LANES, x))
-shift_up = _vector("shift_up", lambda v, before: np.append(before[-1], v[:-1]))
-shift_down = _vector("shift_down", lambda v, after: np.append(v[1:], after[0]))
-lane_sum = _vector("lane_sum", lambda v: v.reshape(2, 2, 2).sum(0).sum(0).sum(0))
-transpose = _vector("transpose", lambda *vectors: np.array(vectors).T)
+_FORMS: dict[str, Callable[..., Any]] = {
+    "load": lambda array, at: array.reshape(-1)[at : at + LANES].copy(),
+    "store": lambda array, at, v: np.copyto(array.reshape(-1)[at : at + LANES], v),
+    "splat": lambda x: np.full(LANES, x),
+    "shift_up": lambda v, before: np.append(before[-1], v[:-1]),
+    "shift_down": lambda v, after: np.append(v[1:], after[0]),
+    "lane_sum": lambda v: v.reshape(2, 2, 2).sum(0).sum(0).sum(0),
+    "transpose": lambda *vectors: np.array(vectors).T,
+}
+load, store, splat, shift_up, shift_down, lane_sum, transpose = map(_vector, _FORMS, _FORMS.values())
 
 
 def round_up(size: int, multiple: int = LANES) -> int:
