@@ -42,6 +42,7 @@ def main() -> None:
             text = f"Standard output cannot be written ({error.strerror}).\n  Free space on the device."
             print(text, file=sys.stderr)
             exit_code = 2
+    gc.freeze()  # the interpreter would search all objects for cycles once more: a fifth of the time of `show`
     sys.exit(exit_code)
 
 

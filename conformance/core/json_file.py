@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, Self, TypeVar
 
@@ -118,11 +119,49 @@ class RoundedModel(BaseModel):
         return type(self).model_validate(self.model_dump())
 
 
+def format_json(tree: Any, ascii_only: bool = True) -> str:
+    """Text of lists, dictionaries with text keys, texts and numbers, as `json.dumps` with an indent of 1 writes it.
+
+    `json.dumps` indents in Python, one number at a time; this function joins the numbers of a curve at once.
+
+    Raises:
+        ValueError: A number is not finite.
+    """
+    return "".join(_list_parts(tree, json.JSONEncoder(ensure_ascii=ascii_only, allow_nan=False).encode, "\n"))
+
+
+def _list_parts(tree: Any, encode: Callable[[Any], str], line: str) -> Iterator[str]:
+    """Parts of the text of a value; `line` is a line break with its indent."""
+    inner = line + " "
+    if isinstance(tree, dict) and tree:
+        before = "{"
+        for key, value in tree.items():
+            yield f"{before}{inner}{encode(key)}: "
+            yield from _list_parts(value, encode, inner)
+            before = ","
+        yield line + "}"
+    elif isinstance(tree, list) and tree:
+        if _FLOAT.issuperset(map(type, tree)) and all(map(math.isfinite, tree)):
+            yield f"[{inner}{f',{inner}'.join(map(float.__repr__, tree))}"
+        else:
+            before = "["
+            for value in tree:
+                yield before + inner
+                yield from _list_parts(value, encode, inner)
+                before = ","
+        yield line + "]"
+    else:
+        yield encode(tree)
+
+
+_FLOAT = frozenset((float,))
+
+
 def write_model(path: Path, model: BaseModel) -> None:
     """Write a model as JSON; equal models give equal bytes.
 
     Raises:
         InputError: The file cannot be written.
     """
-    text = json.dumps(model.model_dump(mode="json", by_alias=True), indent=1, allow_nan=False)
+    text = format_json(model.model_dump(mode="json", by_alias=True))
     write_atomically(path, (text + "\n").encode("ascii"))

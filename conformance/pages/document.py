@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields
 from datetime import datetime
 from typing import Any, Literal, TypeVar
 
+from pantocheck.conformance.core.json_file import format_json
 from pantocheck.conformance.core.reproducibility import read_source_date
 from pantocheck.conformance.results.exploration_format import Exploration
 from pantocheck.conformance.results.motion_format import LineScene
@@ -347,7 +348,7 @@ def strip_times(results: Results) -> Results:
 
 def encode_attachment(results: Results) -> bytes:
     """Attachment of the PDF: results without times as JSON text in ASCII; equal results give equal bytes."""
-    return (json.dumps(strip_times(results).to_dict(), indent=1, allow_nan=False) + "\n").encode("ascii")
+    return (format_json(strip_times(results).to_dict()) + "\n").encode("ascii")
 
 
 def digest_results(results: Results) -> str:

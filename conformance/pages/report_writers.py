@@ -4,6 +4,7 @@ Functions import the writers that they need, because matplotlib, Typst and the t
 """
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -97,19 +98,33 @@ def write_pages(
 ) -> None:
     """Write every format but results.json; the certificate is composed once for all its formats.
 
+    A second thread typesets the PDF: Typst lets other threads run.
+
     If the environment sets `SOURCE_DATE_EPOCH`, the times of the run are left out, so that a second run of the same
     input gives the same bytes.
     """
     if read_source_date() is not None:
         results = strip_times(results)
-    pages = [name for name in formats if name in ("html", "pdf")]
-    certificates = [FILES[name] for name in pages]
-    if pages:
-        from pantocheck.conformance.pages.certificate_page import build_certificate
+    if "html" not in formats and "pdf" not in formats:
+        _write_others(results, folder, formats, places, language)
+        return
+    from pantocheck.conformance.pages.certificate_page import build_certificate
 
-        certificate = replace(build_certificate(results), language=language)
-        for name in pages:
-            write_report(certificate, folder / FILES[name])
+    certificate = replace(build_certificate(results), language=language)
+    with ThreadPoolExecutor(1) as pool:
+        typeset = [pool.submit(write_report, certificate, folder / FILES["pdf"])] if "pdf" in formats else []
+        if "html" in formats:
+            write_report(certificate, folder / FILES["html"])
+        _write_others(results, folder, formats, places, language)
+    for report in typeset:
+        report.result()
+
+
+def _write_others(
+    results: Results, folder: Path, formats: Sequence[str], places: ReportPlaces, language: Language
+) -> None:
+    """Write every format but results.json and the certificate."""
+    certificates = [FILES[name] for name in formats if name in ("html", "pdf")]
     if "md" in formats:
         from pantocheck.conformance.pages.certificate_page import build_summary
 

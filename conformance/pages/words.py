@@ -16,6 +16,9 @@ from pantocheck.conformance.results.motion_format import CodedField
 
 Content = TypeVar("Content")
 
+TEXTLESS = frozenset((float, int, bool, type(None)))
+"""Types of values without a text: a curve is passed on as it is."""
+
 LONGEST = 2000
 """Largest number of characters of a text."""
 
@@ -48,7 +51,7 @@ def change_texts(value: Content, change: Callable[[str], str]) -> Content:
         changed = value.model_copy(update={name: change_texts(part, change) for name, part in value})
     elif isinstance(value, dict):
         changed = {change_texts(key, change): change_texts(item, change) for key, item in value.items()}
-    elif isinstance(value, list | tuple):
+    elif isinstance(value, list | tuple) and not TEXTLESS.issuperset(map(type, value)):
         changed = type(value)(change_texts(item, change) for item in value)
     return cast(Content, changed)
 

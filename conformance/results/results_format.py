@@ -3,7 +3,6 @@
 The models check the file when it is written and read. Their JSON Schema is exported.
 """
 
-import json
 from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import Field, model_validator
@@ -21,6 +20,7 @@ from pantocheck.conformance.core.figure_data import (
     check_lengths,
 )
 from pantocheck.conformance.core.findings import FindingCounts
+from pantocheck.conformance.core.json_file import format_json
 from pantocheck.conformance.core.packed_samples import SignalSamples
 from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart, Suite, is_empty
 from pantocheck.conformance.core.sourced_table import (
@@ -329,4 +329,4 @@ class Results(ResultsPart):
 
     def to_json(self) -> bytes:
         """Content of results.json; the same results give the same bytes."""
-        return (json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+        return (format_json(self.to_dict(), ascii_only=False) + "\n").encode()
