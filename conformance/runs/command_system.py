@@ -16,7 +16,6 @@ from pantocheck.conformance.core.sourced_table import PROVENANCE
 from pantocheck.conformance.core.table_sidecar import record_digest
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw
 from pantocheck.conformance.records.sidecar_tables import RunTable
-from pantocheck.conformance.runs.delivered_film import film_delivery
 from pantocheck.conformance.runs.derived_values import build_derived
 from pantocheck.conformance.runs.program import Program, ProgramFailed, split_arguments
 from pantocheck.conformance.runs.protocol_messages import (
@@ -31,7 +30,7 @@ from pantocheck.conformance.runs.protocol_messages import (
     encode_message,
     parse_message,
 )
-from pantocheck.conformance.runs.record_folder import read_case_record
+from pantocheck.conformance.runs.record_folder import film_shapes, read_case_record
 from pantocheck.conformance.runs.system import Delivered, Errored, Outcome, Skipped, note_case_version
 
 START_LIMIT = 120.0
@@ -187,7 +186,7 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
         if sidecar.shapes is None or sidecar_path.parent / sidecar.shapes != shapes:
             found = f"the sidecar names the shapes {sidecar.shapes!r}, the answer {answer.record.shapes.file!r}"
             raise DeliveryRefused(found)
-        film = film_delivery(case, record, shapes)
+        film = film_shapes(case, record, shapes)
     run = sidecar.run
     if run.wall_s is None:
         run = run.model_copy(update={"wall_s": wall})

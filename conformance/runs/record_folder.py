@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.table_sidecar import locate_table, record_digest
 from pantocheck.conformance.core.texts import count_noun
@@ -20,8 +21,10 @@ from pantocheck.conformance.records.record import SPEED_TOLERANCE, Record
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
-from pantocheck.conformance.runs.delivered_film import film_delivery
 from pantocheck.conformance.runs.system import Delivered, Errored, Outcome, Skipped, note_case_version
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.runs.delivered_film import DeliveredFilm
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,7 @@ class RecordFolder:
         if isinstance(opened, RecordSummary):
             return _deliver_summary(opened, case, record_digest(path))
         record, sidecar = read_case_record(path, case)
-        film = None if sidecar.shapes is None else film_delivery(case, record, locate_table(path, sidecar.shapes, None))
+        film = None if sidecar.shapes is None else film_shapes(case, record, locate_table(path, sidecar.shapes, None))
         return Delivered(
             record,
             line_shape=None if film is None else film.line_shape,
@@ -56,6 +59,13 @@ class RecordFolder:
             case_digest=sidecar.case_digest,
             digest=record_digest(path, path.parent / sidecar.file),
         )
+
+
+def film_shapes(case: Case, record: Record, path: Path) -> "DeliveredFilm":
+    """Moving picture from delivered shapes of the wires; the model of the line and HDF5 load for them alone."""
+    with refuse_missing_package(f"shapes '{path.name}'"):
+        from pantocheck.conformance.runs.delivered_film import film_delivery
+    return film_delivery(case, record, path)
 
 
 def _deliver_summary(summary: RecordSummary, case: Case, digest: str) -> Outcome:

@@ -314,6 +314,17 @@ def test_verification_of_results_loads_no_solver_and_no_network(tmp_path: Path) 
     assert loaded.isdisjoint(HEAVY | PAGES | UNUSED)
 
 
+@pytest.mark.parametrize("command", ["pantograph check", "runs import", "runs assess", "run", "assess", "compare"])
+def test_command_loads_no_page_writer_and_no_measurement_format_before_it_needs_one(command: str) -> None:
+    """`runs assess` grades sections, and `pantograph check` couples an FMU: neither draws before it has results."""
+    code = "import sys; from pantocheck.conformance.app.commands.command_list import load_command\n"
+    code += "load_command(sys.argv[1]); print(*sys.modules)"
+    result = subprocess.run(
+        [sys.executable, "-c", code, command], check=True, capture_output=True, text=True, timeout=300
+    )
+    assert (HEAVY | PAGES | {"h5py", "pyarrow", "nptdms", "asammdf"}).isdisjoint(result.stdout.split())
+
+
 def test_run_without_pages_needs_neither_filters_of_scipy_nor_plotting(tmp_path: Path) -> None:
     """Their imports take longer than the passages of the case."""
     code = (
@@ -325,8 +336,16 @@ def test_run_without_pages_needs_neither_filters_of_scipy_nor_plotting(tmp_path:
     command = [sys.executable, "-c", code, str(tmp_path / "out")]
     output = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300)
     assert HEAVY.isdisjoint(output.stdout.split())
-    assert {"matplotlib", "typst"}.isdisjoint(output.stdout.split())
+    assert {"matplotlib", "typst", "h5py"}.isdisjoint(output.stdout.split())
     assert ("numba" in output.stdout.split()) is (choose_core().library is None)
+
+
+def test_certificate_without_charts_is_drawn_without_matplotlib(tmp_path: Path) -> None:
+    """Importing it takes longer than all figures."""
+    source = ("--system", "record:en50318-2002/known-passing-code")
+    (loaded,) = list_loaded(" ".join(("run", "en50318-2002/250", *source, "--out", "out")), tmp_path)
+    assert loaded.isdisjoint(HEAVY | {"matplotlib", "numba"})
+    assert (tmp_path / "out" / "certificate.pdf").stat().st_size > 50_000
 
 
 def test_show_states_requirements_start_and_section() -> None:
