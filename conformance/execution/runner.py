@@ -27,6 +27,7 @@ from pantocheck.conformance.grading.results_building import build_results, utc_n
 from pantocheck.conformance.records.traces import round_series
 from pantocheck.conformance.results.case_facts_format import ReferenceValues
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
+from pantocheck.conformance.runs.core_requirement import announce_compilation
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import System
 
@@ -168,6 +169,8 @@ def _run_in_parallel(
     keep: Progress,
     rule: DecisionRule,
 ) -> None:
+    if system.kind == "builtin":
+        announce_compilation()
     waiting = _order_cases(cases)
     running: dict[Future[CaseResult], Case] = {}
     others = set(multiprocessing.active_children())

@@ -19,7 +19,7 @@ from pantocheck.conformance.records.record import OUTPUT_COLUMN, Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.case_facts_format import FmuRun
-from pantocheck.conformance.runs.core_requirement import require_core
+from pantocheck.conformance.runs.core_requirement import announce_compilation, require_core
 from pantocheck.conformance.runs.fmu_process import describe_coupling, open_fmu
 from pantocheck.conformance.runs.uplift_tuning import (
     TuningFailed,
@@ -280,6 +280,7 @@ def integrate_mass_drop(
         InputError: There is no core.
     """
     require_core("drop simulation")
+    announce_compilation()
     from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
 
     return simulate_mass_drop(catenary, element_length, test, progress)

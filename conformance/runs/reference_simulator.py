@@ -18,7 +18,7 @@ from pantocheck.conformance.line.line_parameters import list_tolerance_lines
 from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs.case_run import run_passage, run_start
-from pantocheck.conformance.runs.core_requirement import require_core
+from pantocheck.conformance.runs.core_requirement import COMPILATION, announce_compilation, require_core
 from pantocheck.conformance.runs.passage_film import film_passage
 from pantocheck.conformance.runs.resolution import (
     list_mesh_frequencies,
@@ -31,8 +31,6 @@ from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model import Catenary, discretise
 from pantocheck.model.description.failures import SimulationError
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
-from pantocheck.model.dynamics.core_choice import choose_core
-from pantocheck.model.kernel_cache import has_kept_kernels
 
 _LOGGER = logging.getLogger(__name__)
 
@@ -40,8 +38,6 @@ OWN_MESH, FINE_MESH, COARSE_MESH = "mesh of the case", "mesh halved", "mesh doub
 """Steps of a case."""
 OTHER_RUNS = "other meshes and starts"
 """Name of the steps after the first one together, on several threads."""
-COMPILATION = "compiling the simulator, once, about 35 s"
-"""Step of the first run after an installation; its processor time on the machine of the speed page is 33 s."""
 AT_REST_S = 4.0
 """Simulated time that takes as long as the static quantities of a line [s]."""
 
@@ -161,17 +157,10 @@ def estimate_work(case: Case) -> float:
     return cells * max(len(case.pantographs), 1) * sum(_plan_steps(case).weights.values()) / 1e6
 
 
-def needs_compilation() -> bool:
-    """Whether the next passage compiles the simulator first."""
-    core = choose_core()
-    return core.library is None and core.is_compiled and not has_kept_kernels()
-
-
 def _begin_run(case: Case, steps: StepSequence) -> ShareCallback:
     """Begin the run on the mesh of the case; the first run of all shows its compilation until its time steps begin."""
     progress = steps.begin(OWN_MESH)
-    if not case.is_static and needs_compilation():
-        _LOGGER.warning("%s", COMPILATION)
+    if not case.is_static and announce_compilation():
         steps.begin(COMPILATION)
     return progress
 

@@ -23,6 +23,14 @@ function describeLimits({ lower, upper }) {
   return upper === null ? "–" : `at most ${formatNumber(upper)}`;
 }
 
+/** Change from the second value to the first: its share, or the difference where a share has no meaning. */
+function describeChange(first, second, unit) {
+  if (first === null || second === null || first === undefined || second === undefined) return "–";
+  const sign = first >= second ? "+" : "−";
+  const isShare = first > 0 && second > 0;
+  return `${sign}${formatNumber(Math.abs(isShare ? 100 * (first / second - 1) : first - second), 3)} ${isShare ? "%" : unit === "%" ? "points" : unit}`;
+}
+
 /** Cell of a value: the number, and whether it lies inside its limits. */
 function valueCell(label, row) {
   const number = element("data", { value: row.value ?? "" }, formatNumber(row.value));
@@ -40,8 +48,7 @@ function makeValueTable(settings) {
     const cells = others.map((other, i) => (other ? valueCell(names[i], other) : element("td", { role: "cell", "data-label": names[i] }, "–")));
     if (settings.length > 1) {
       const [one, two] = others.map((other) => other?.value);
-      const share = one === null || !two ? "–" : `${one >= two ? "+" : "−"}${formatNumber(Math.abs(100 * (one / two - 1)), 3)} %`;
-      cells.push(element("td", { role: "cell", class: "number", "data-label": "1 against 2" }, share));
+      cells.push(element("td", { role: "cell", class: "number", "data-label": "1 against 2" }, describeChange(one, two, row.unit)));
     }
     const name = element("th", { role: "rowheader", scope: "row" }, `${nameValue(row)} [${row.unit}]`);
     return element("tr", { role: "row" }, name, element("td", { role: "cell", class: "number", "data-label": "limits" }, describeLimits(row)), ...cells);
@@ -58,7 +65,7 @@ function makeBars(settings, owner) {
   const rows = Object.entries(BANDS).map(([name, text]) => {
     const bars = settings.map((setting, i) => {
       const bar = element("div", { class: `bar setting-${i + 1}` });
-      bar.style.width = `${(80 * find(setting, name)) / highest}%`;
+      bar.style.width = `${(75 * find(setting, name)) / highest}%`;
       return element("div", { class: "row" }, bar, element("span", {}, `${settings.length > 1 ? `${i + 1}: ` : ""}${formatNumber(find(setting, name), 3)} N`));
     });
     return element("div", { class: "band" }, element("span", { class: "name" }, text), element("div", {}, ...bars));

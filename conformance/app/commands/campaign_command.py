@@ -36,6 +36,7 @@ from pantocheck.conformance.core.toml_file import read_toml, validate_model
 from pantocheck.conformance.pages.campaign_page import build_campaign_report
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_document
 from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults
+from pantocheck.conformance.runs.core_requirement import COMPILATION, needs_compilation
 
 STOPPED: dict[CampaignEnding, str] = {
     "complete": "",
@@ -196,6 +197,8 @@ def _drive(prepared: PreparedCampaign, store: CampaignStore) -> tuple[CampaignEn
     try:
         with choose_executor(prepared.file.execution) as executor:
             typer.echo(f"Runs in {executor.description}.", err=True)
+            if "builtin" in prepared.file.systems and needs_compilation():
+                typer.echo(COMPILATION, err=True)
             with report_campaign() as report:
                 return prepared.drive(store, executor, report), 0
     except KeyboardInterrupt as interruption:

@@ -21,8 +21,7 @@ from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages.explore_page import build_explorer
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.results.exploration_format import Exploration
-from pantocheck.conformance.runs.core_requirement import require_core
-from pantocheck.conformance.runs.reference_simulator import COMPILATION, needs_compilation
+from pantocheck.conformance.runs.core_requirement import COMPILATION, needs_compilation, require_core
 
 
 def explore_command(

@@ -121,10 +121,9 @@ class TaskProgress(logging.Handler):
         self._reached = [*self._reached[:1], (self._clock(), share)]
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Keep the step of a record; print a warning at once where no live line shows its step."""
-        errors, in_log = error_console(), current_settings().detail == "verbose"
-        if record.levelno == logging.WARNING and not (errors.is_terminal or in_log):
-            errors.print(Text(strip_control_characters(record.getMessage())), soft_wrap=True)
+        """Keep the step of a record; print a warning at once, above a live line."""
+        if record.levelno == logging.WARNING and current_settings().detail != "verbose":  # whose log prints it
+            error_console().print(Text(strip_control_characters(record.getMessage())), soft_wrap=True)
         if isinstance(step := getattr(record, "step", None), TaskStep):
             if self._reached:  # a part has cases without an end of their own: only the latest is named
                 self._steps = {}

@@ -17,10 +17,11 @@ from pantocheck.conformance.app.commands.output_settings import OutputSettings, 
 from pantocheck.conformance.app.commands.progress_display import REDRAWS_PER_S, TaskProgress, follow_steps, show_line
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.step_log import StepSequence, report_remote, use_part
-from pantocheck.conformance.runs import reference_simulator
+from pantocheck.conformance.drops.drop_simulation import simulate_drop
+from pantocheck.conformance.runs import core_requirement, reference_simulator
+from pantocheck.conformance.runs.core_requirement import COMPILATION
 from pantocheck.conformance.runs.reference_simulator import (
     COARSE_MESH,
-    COMPILATION,
     FINE_MESH,
     OTHER_RUNS,
     OWN_MESH,
@@ -118,6 +119,16 @@ def test_compilation_is_announced_at_once_in_a_log(capsys: pytest.CaptureFixture
     with use_settings(OutputSettings(detail="verbose")), follow_steps("running cases"):
         LOGGER.warning(COMPILATION)
         assert capsys.readouterr().err == ""  # the log itself prints it
+
+
+def test_compilation_for_a_mass_drop_is_announced(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A drop has no step of its own for the compiler, so its warning is the only word."""
+    monkeypatch.setattr(core_requirement, "needs_compilation", lambda: True)
+    case = select_cases(["vovan2015/mass-drop/stand-in"])[-1]
+    simulate_drop(case, 1)
+    assert COMPILATION in caplog.messages
 
 
 def test_remaining_time_is_not_extrapolated_from_nothing() -> None:
@@ -278,8 +289,8 @@ def test_reference_simulator_reports_its_steps(
     kept: bool, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The completed share never decreases, although the tuning of two uplift forces repeats the passage."""
-    monkeypatch.setattr(reference_simulator, "has_kept_kernels", lambda: kept)
-    monkeypatch.setattr(reference_simulator, "choose_core", lambda: Core("numba", None))
+    monkeypatch.setattr(core_requirement, "has_kept_kernels", lambda: kept)
+    monkeypatch.setattr(core_requirement, "choose_core", lambda: Core("numba", None))
     case = select_cases(["en50318-2018/ac-simple/275-twin"])[-1]
     short = shorten_case(case, 200.0, 0.5, 2)
     with caplog.at_level(logging.DEBUG, "pantocheck"):
