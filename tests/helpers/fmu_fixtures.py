@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pantocheck.conformance.cases.case_parts import read_named_pantograph
@@ -36,3 +37,21 @@ def write_fmu(tmp_path: Path) -> WriteFmu:
         return read_named_pantograph(path)
 
     return write
+
+
+def damage(content: bytes, seed: int) -> bytes:
+    """Content with a few bytes changed, a part cut out or repeated, or its end cut off."""
+    random = np.random.default_rng(seed)
+    data = bytearray(content)
+    place = int(random.integers(len(data)))
+    match seed % 4:
+        case 0:
+            for k in random.integers(len(data), size=1 + seed % 7):
+                data[k] = int(random.integers(256))
+        case 1:
+            del data[place : place + int(random.integers(1, 200))]
+        case 2:
+            data[place:place] = data[place // 2 : place]
+        case _:
+            del data[place:]
+    return bytes(data)

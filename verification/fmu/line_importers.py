@@ -1,14 +1,14 @@
-"""Exported lines in another importer than FMPy: Ecos, a co-simulation engine in C++ (`pip install ecospy tbb`).
-
-It finds the library of `tbb` by LD_LIBRARY_PATH.
+"""Exported lines in another importer than FMPy: Ecos, a co-simulation engine in C++ (extra `peers`).
 
 `python -m verification.fmu.line_importers [CASE ...]`: each line, in FMI 3.0 and 2.0, replays the heights of the heads
 of the built-in passage, and its forces are compared with those of the passage.
 """
 
+import ctypes
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,14 +18,27 @@ from pantocheck.conformance.runs.reference_simulator import UnrefinedSimulator
 from verification.fmu.line_coupling import select_moving
 
 
+def load_ecos() -> Any:
+    """Package of Ecos; its library needs that of the package tbb, which lies outside of the paths of the loader.
+
+    Raises:
+        ImportError: A package is not installed.
+        OSError: A library cannot be loaded.
+    """
+    for library in sorted(Path(sys.prefix, "lib").glob("libtbb.so.*"))[:1]:
+        ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
+    import ecospy
+
+    return ecospy
+
+
 def replay_in_ecos(archive: Path, heights: RealArray, time_step: float) -> RealArray:
     """Contact forces of an exported line under given heights of the heads, (P, T) [N]."""
-    from ecospy import EcosSimulation, EcosSimulationStructure
-
+    ecos = load_ecos()
     numbers, rows = range(1, len(heights) + 1), []
-    with EcosSimulationStructure() as structure:
+    with ecos.EcosSimulationStructure() as structure:
         structure.add_model("line", str(archive))
-        with EcosSimulation(structure=structure, step_size=time_step) as simulation:
+        with ecos.EcosSimulation(structure=structure, step_size=time_step) as simulation:
             simulation.init()
             for height in heights.T:
                 for n, value in zip(numbers, height.tolist(), strict=True):

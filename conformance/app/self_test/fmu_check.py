@@ -1,17 +1,24 @@
 """Check of an FMU as a pantograph: every gap is named before a passage depends on it."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from pantocheck.conformance.app.self_test.adapter_check import AdapterFinding
+from pantocheck.conformance.comparison.response_comparison import (
+    LARGEST_SUPPORTED_DEVIATION,
+    find_supported_frequency,
+    model_stiffness,
+    response_deviation,
+)
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.pantograph.fmu_table import FmuTable
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
+from pantocheck.conformance.pantograph.response_record import ResponseRecord
 from pantocheck.conformance.runs.fmu_process import INPUTS, OUTPUTS, FmuPantograph, open_fmu
 from pantocheck.conformance.runs.force_dynamics import MISFIT
 from pantocheck.model.description.failures import SimulationError
@@ -54,22 +61,30 @@ class ExcitedHead:
     seconds_per_step: float
 
 
-def check_fmu(file: PantographFile, uplift_force: float, time_step: float) -> FmuCheck:
+def check_fmu(
+    file: PantographFile, uplift_force: float, time_step: float, measured: Sequence[ResponseRecord] = ()
+) -> FmuCheck:
     """Check the FMU of a pantograph file that the user has named.
 
     Args:
         file: Pantograph file with an FMU.
         uplift_force: Uplift force [N].
         time_step: Step of the coupling [s].
+        measured: Measured responses.
 
     Raises:
-        InputError: The file has no FMU, or its variables do not exist or have other units.
+        InputError: The file has no FMU, its variables do not exist or have other units, or a response was not measured
+            at the centre of the head.
     """
     if file.fmu is None:
         raise InputError("pantograph", "has no table [fmu]", "Name a pantograph file with an FMU, or an FMU beside it.")
+    for record in measured:
+        if not record.sidecar.is_at_head:
+            found = "was not measured at the centre of the head"
+            raise InputError(f"record '{record.source}'", found, "Give a response of the whole head.")
     findings: list[AdapterFinding] = []
     try:
-        for finding in _list_findings(file, file.fmu, uplift_force, time_step):
+        for finding in _list_findings(file, file.fmu, uplift_force, time_step, measured):
             findings.append(finding)
     except SimulationError as error:
         findings.append(AdapterFinding("wrong", "run", f"{error}."))
@@ -77,7 +92,7 @@ def check_fmu(file: PantographFile, uplift_force: float, time_step: float) -> Fm
 
 
 def _list_findings(
-    file: PantographFile, table: FmuTable, uplift_force: float, time_step: float
+    file: PantographFile, table: FmuTable, uplift_force: float, time_step: float, measured: Sequence[ResponseRecord]
 ) -> Iterator[AdapterFinding]:
     values = {"uplift_force_N": uplift_force, "train_speed_km_h": 0.0, "base_height_m": 0.0}
     model = build_pantograph(file, uplift_force, 0.0)
@@ -102,7 +117,11 @@ def _list_findings(
     expected = float(equilibrium(model, 0.0)[1].sum())
     text = f"{resting:.2f} N hold the head at its working height; the linear model of the file has {expected:.2f} N."
     yield AdapterFinding("ok" if abs(resting - expected) <= 0.02 * expected else "wrong", "static force", text)
-    yield _compare_response(table, model, response, time_step)
+    force = exciting_force(time_step)
+    linear = _receptance(_linear_heights(model, force, time_step), force, time_step)
+    yield _compare_response(table, response.receptance, linear)
+    for record in measured:
+        yield _compare_measured(record, file, table, response.receptance / linear)
     yield _check_passivity(table, response)
     again, halved = respond(time_step)[1], respond(time_step / 2)[1]
     same = np.array_equal(again.height, response.height)
@@ -191,13 +210,11 @@ def _deviation(found: ComplexArray, expected: ComplexArray) -> float:
     return float(np.sqrt(np.mean(np.abs(found / expected - 1)[judged] ** 2)))
 
 
-def _compare_response(table: FmuTable, model: Pantograph, response: ExcitedHead, time_step: float) -> AdapterFinding:
-    """Compare the response with that of the linear model, in the same steps from the same rest."""
-    force = exciting_force(time_step)
-    expected = _receptance(_linear_heights(model, force, time_step), force, time_step)
-    deviation, largest = _deviation(response.receptance, expected), MISFIT.thresholds["contradiction"]
-    ratio = np.abs(response.receptance / expected)
-    worst = int(np.argmax(np.abs(response.receptance / expected - 1) * (FREQUENCIES_HZ <= SUPPORTED_HZ)))
+def _compare_response(table: FmuTable, found: ComplexArray, linear: ComplexArray) -> AdapterFinding:
+    """Compare a receptance with that of the linear model, in the same steps from the same rest."""
+    deviation, largest = _deviation(found, linear), MISFIT.thresholds["contradiction"]
+    ratio = np.abs(found / linear)
+    worst = int(np.argmax(np.abs(found / linear - 1) * (FREQUENCIES_HZ <= SUPPORTED_HZ)))
     text = (
         f"the response from {FREQUENCIES_HZ[0]:g} to {SUPPORTED_HZ:g} Hz differs from the linear model of the file by"
         f" {deviation:.2%}, most at {FREQUENCIES_HZ[worst]:g} Hz, where it is {ratio[worst]:.4g} times as large."
@@ -206,6 +223,33 @@ def _compare_response(table: FmuTable, model: Pantograph, response: ExcitedHead,
         return AdapterFinding("note", "response", text)
     hint = "" if deviation <= largest else " Correct mass, springs and dampers of one of both."
     return AdapterFinding("ok" if deviation <= largest else "wrong", "response", text + hint)
+
+
+def _compare_measured(
+    record: ResponseRecord, file: PantographFile, table: FmuTable, ratio: ComplexArray
+) -> AdapterFinding:
+    """Compare the head with a measured response.
+
+    The ratio of the receptance to that of the linear model changes slowly with the frequency, and is interpolated.
+    """
+    inside = (record.frequency >= FREQUENCIES_HZ[0]) & (record.frequency <= SUPPORTED_HZ)
+    inside &= np.isfinite(record.stiffness)
+    frequency, subject = record.frequency[inside], "measured"
+    if frequency.size < 2:
+        text = f"{record.source} has no values from {FREQUENCIES_HZ[0]:g} to {SUPPORTED_HZ:g} Hz."
+        return AdapterFinding("missing", subject, text)
+    softer = np.interp(frequency, FREQUENCIES_HZ, ratio.real) + 1j * np.interp(frequency, FREQUENCIES_HZ, ratio.imag)
+    deviation = response_deviation(model_stiffness(file, frequency) / softer, record.stiffness[inside])
+    supported = find_supported_frequency(frequency, deviation)
+    rms = float(np.sqrt(np.mean(np.abs(deviation) ** 2)))
+    reach = "at no frequency" if supported is None else f"up to {supported:.3g} Hz"
+    text = (
+        f"{record.source} supports the FMU {reach}, within {LARGEST_SUPPORTED_DEVIATION:.0%} in each third of an"
+        f" octave; from {frequency[0]:.3g} to {frequency[-1]:.3g} Hz the deviation is {rms:.1%}."
+    )
+    if not table.is_linear:
+        return AdapterFinding("note", subject, text)
+    return AdapterFinding("ok" if supported is not None and supported >= frequency[-1] else "wrong", subject, text)
 
 
 def _check_passivity(table: FmuTable, response: ExcitedHead) -> AdapterFinding:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers.fmu_fixtures import damage
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.pantograph.fmu_archive import FREE_CONTENT, unpack_fmu
 
@@ -84,24 +85,6 @@ def test_a_bad_archive_is_refused_before_anything_leaves_its_folder(tmp_path: Pa
 def test_another_archive_than_the_named_one_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has the SHA-256"):
         unpack(archive(tmp_path / "model.fmu"), tmp_path / "out", "0" * 64)
-
-
-def damage(content: bytes, seed: int) -> bytes:
-    """Content with a few bytes changed, a part cut out or repeated, or its end cut off."""
-    random = np.random.default_rng(seed)
-    data = bytearray(content)
-    place = int(random.integers(len(data)))
-    match seed % 4:
-        case 0:
-            for k in random.integers(len(data), size=1 + seed % 7):
-                data[k] = int(random.integers(256))
-        case 1:
-            del data[place : place + int(random.integers(1, 200))]
-        case 2:
-            data[place:place] = data[place // 2 : place]
-        case _:
-            del data[place:]
-    return bytes(data)
 
 
 def unpack_damaged(folder: Path, seeds: range) -> int:
