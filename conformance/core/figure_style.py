@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.drawn_data import DrawnFigure, list_painted_data
 from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.look import read_look
 from pantocheck.conformance.core.reproducibility import read_source_date
@@ -82,10 +83,10 @@ def render_svg(paint: "Callable[Arguments, Figure]") -> Callable[Arguments, str]
             buffer = io.StringIO()
             # No metadata: they would hold the date and the version of matplotlib.
             metadata = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-            canvas: Any = FigureCanvasSVG(paint(*args, **kwargs))
+            canvas: Any = FigureCanvasSVG(figure := paint(*args, **kwargs))
             canvas.print_svg(buffer, metadata=metadata)
         text = buffer.getvalue()
-        return text[text.index("<svg") :]
+        return DrawnFigure(text[text.index("<svg") :], list_painted_data(figure))
 
     return render
 

@@ -12,6 +12,7 @@ from typing import ParamSpec
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.drawn_data import DrawnData, DrawnFigure, name_panel
 from pantocheck.conformance.core.figure_style import INK
 from pantocheck.conformance.core.font_file import measure_text
 from pantocheck.conformance.core.look import read_look
@@ -354,6 +355,15 @@ class PanelFigure:
         ground = f'<rect width="{size[0]}" height="{size[1]}" fill="#ffffff"/>'
         return f'{root} height="{size[1]}pt" version="1.1">{ground}{panels}</svg>\n'
 
+    def list_data(self) -> list[DrawnData]:
+        """Curves and areas of all panels."""
+        found = []
+        for panel in self.axes:
+            name = name_panel(panel.x_scale.name, panel.y_scale.name)
+            found += [DrawnData(name, curve.label or "", curve.x, curve.y) for curve in panel.curves]
+            found += [DrawnData(name, area.label or "", np.array(area.x), np.array(area.y)) for area in panel.areas]
+        return found
+
 
 def draw_symbol(panel: Panel, name: str, foot: tuple[float, float], half_width: float, length: float) -> None:
     """Draw the symbol of a mass, spring or damper from its foot upwards, in the units of the panel."""
@@ -368,6 +378,7 @@ def write_svg(paint: Callable[Arguments, PanelFigure]) -> Callable[Arguments, st
     @wraps(paint)
     def write(*args: Arguments.args, **kwargs: Arguments.kwargs) -> str:
         """Paint the figure; return its SVG text."""
-        return paint(*args, **kwargs).write()
+        figure = paint(*args, **kwargs)
+        return DrawnFigure(figure.write(), figure.list_data())
 
     return write

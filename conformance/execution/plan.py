@@ -63,8 +63,8 @@ class Plan(InputTable):
     language: Language = "en"
     """Language of the certificate and of the summary: en, de, fr, it or es."""
     formats: Names | None = None
-    """Formats of the report: html, pdf, json, csv, junit, md, badge, annotations, codequality; default: the first
-    six, pdf only if the extra `pdf` is installed.
+    """Formats of the report: html, pdf, json, csv, junit, md, badge, annotations, codequality, figures; default: the
+    first six, pdf only if the extra `pdf` is installed.
     """
     trust: Trust = "secondary"
     """Lowest trust of the limits that count."""

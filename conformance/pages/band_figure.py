@@ -11,7 +11,10 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.drawn_data import DrawnData, DrawnFigure, name_panel
 from pantocheck.conformance.core.figure_style import FULL, GREY, INK, LIMIT_FILL, SHADES
 from pantocheck.conformance.core.results_part import select_single
 from pantocheck.conformance.pages import document as doc
@@ -102,7 +105,28 @@ def draw_bars(groups: Sequence[Sequence[BandBar]]) -> str:
             parts += _list_bar(bar, middle + PITCH * (place - (len(group) - 1) / 2), scale, named=len(group) > 1)
         parts += [_draw_waves(middle, PERIODS[number]), _write(middle, HEIGHT - 3, f"{band.low:g}–{band.high:g} Hz")]
     size = f'viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}pt" height="{HEIGHT:g}pt"'
-    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(parts)}</svg>'
+    drawing = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(parts)}</svg>'
+    return DrawnFigure(drawing, _list_data(groups))
+
+
+def _list_data(groups: Sequence[Sequence[BandBar]]) -> Iterator[DrawnData]:
+    """Values at the upper edges of the bands, half-widths of their intervals and limits; NaN for a missing one."""
+    for owner in sorted({bar.owner for group in groups for bar in group}):
+        bars = [
+            (band.high, bar) for band, group in zip(BANDS, groups, strict=True) for bar in group if bar.owner == owner
+        ]
+        limits = [bar.limits or (math.nan, math.nan) for _, bar in bars]
+        columns = {
+            "value": [bar.value for _, bar in bars],
+            "uncertainty": [math.nan if bar.uncertainty is None else bar.uncertainty for _, bar in bars],
+            "lower limit": [low for low, _ in limits],
+            "upper limit": [high for _, high in limits],
+        }
+        for name, values in columns.items():
+            places = np.array([place for place, _ in bars])
+            yield DrawnData(
+                name_panel("frequency [Hz]", "RMS [N]"), f"pantograph {owner}, {name}", places, np.array(values)
+            )
 
 
 def _list_bar(bar: BandBar, x: float, scale: float, *, named: bool) -> Iterator[str]:

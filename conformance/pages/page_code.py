@@ -19,7 +19,7 @@ PLOT_LIBRARY = "uplot/uPlot.iife.min.js"
 
 PLOT_LICENCE = "uplot/LICENSE"
 
-TABLE_SCRIPTS = ("elements", "folding", "tables")
+TABLE_SCRIPTS = ("elements", "folding", "tables", "figure_files")
 """Parts of the script of every page."""
 
 CHOICE_SCRIPTS = ("pole_choice",)

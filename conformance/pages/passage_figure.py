@@ -13,7 +13,7 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.fixed_panels import PanelGrid, lay_panels
 from pantocheck.conformance.pages.line_figure import WIRE_WIDTHS
 from pantocheck.conformance.pages.words import format_plain, format_value
-from pantocheck.conformance.results.motion_format import LineScene, PassageMotion
+from pantocheck.conformance.results.motion_format import PassageMotion
 from pantocheck.conformance.results.results_format import CaseResult
 
 ENLARGED = 5
@@ -42,27 +42,6 @@ def draw_passage(case: CaseResult, number: int, anchor: str) -> Iterator[doc.Fig
     yield doc.Figure(
         draw_instant(motion, shape, section, frame), alternative, caption, anchor=f"{anchor}-passage", curves=curves
     )
-
-
-def draw_scene(scene: LineScene, number: int) -> doc.Figure:
-    """First picture of a scene, which a script replaces: a mass at its release, or the middle of a compared passage.
-
-    `number` is the index of the scene.
-    """
-    motion, shape, name = scene.motions[0], scene.line_shape, scene.names[0]
-    enlarged = f"Motion {ENLARGED} times enlarged over the heights. {ILLUSTRATION}"
-    if scene.together:
-        frame = motion.wires[0].rise_mm.frames // 2
-        others = ", ".join(scene.names[1:])
-        caption = (
-            f"Passage of {name} at {motion.start_s + frame * motion.step_s:.3f} s; over it moves {others}. {enlarged}"
-        )
-    else:
-        frame = max(0, math.floor(-motion.start_s / motion.step_s))
-        caption = f"{name}: the line under the mass, at the release. {enlarged}"
-    svg = draw_instant(motion, shape, (shape.supports_m[0], shape.supports_m[0]), frame)
-    curves = doc.Curves("passage", number)
-    return doc.Figure(svg, caption, caption, anchor=f"scene-{number + 1}", curves=curves)
 
 
 def _find_smallest(motion: PassageMotion, section: tuple[float, float]) -> tuple[int, int, float]:

@@ -105,7 +105,7 @@ def write_pages(
     """
     if read_source_date() is not None:
         results = strip_times(results)
-    if "html" not in formats and "pdf" not in formats:
+    if not {"html", "pdf", "figures"} & set(formats):
         _write_others(results, folder, formats, places, language)
         return
     from pantocheck.conformance.pages.certificate_page import build_certificate
@@ -115,6 +115,10 @@ def write_pages(
         typeset = [pool.submit(write_report, certificate, folder / FILES["pdf"])] if "pdf" in formats else []
         if "html" in formats:
             write_report(certificate, folder / FILES["html"])
+        if "figures" in formats:
+            from pantocheck.conformance.pages.figure_files import write_figures
+
+            write_figures(certificate, folder / FILES["figures"])
         _write_others(results, folder, formats, places, language)
     for report in typeset:
         report.result()

@@ -24,8 +24,8 @@ from pantocheck.conformance.pages.comparison_parts import clean_model
 from pantocheck.conformance.pages.condition_sections import BAND_MARK, CONDITIONED
 from pantocheck.conformance.pages.criteria_table import Basis
 from pantocheck.conformance.pages.frequency_section import mute_cell
-from pantocheck.conformance.pages.passage_figure import draw_scene
 from pantocheck.conformance.pages.study_chart import draw_chart
+from pantocheck.conformance.pages.view_page import draw_scene
 from pantocheck.conformance.pages.words import (
     clean_text,
     format_plain,

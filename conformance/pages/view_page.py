@@ -1,12 +1,13 @@
 """Pages of `pantocheck view`: passages of results, as moving pictures where their wires are known, and mass drops."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_case_figures
 from pantocheck.conformance.pages.document_facts import name_system
-from pantocheck.conformance.pages.passage_figure import ILLUSTRATION, draw_passage, draw_scene
+from pantocheck.conformance.pages.passage_figure import ENLARGED, ILLUSTRATION, draw_instant, draw_passage
 from pantocheck.conformance.results.motion_format import LineScene
 from pantocheck.conformance.results.results_format import Results
 
@@ -31,3 +32,24 @@ def build_drop_view(title: str, scenes: Sequence[LineScene]) -> doc.Document:
         for number, scene in enumerate(scenes)
     ]
     return replace(doc.build_plain_document("Mass drops", f"{title}. {ILLUSTRATION}", blocks), scenes=tuple(scenes))
+
+
+def draw_scene(scene: LineScene, number: int) -> doc.Figure:
+    """First picture of a scene, which a script replaces: a mass at its release, or the middle of a compared passage.
+
+    `number` is the index of the scene.
+    """
+    motion, shape, name = scene.motions[0], scene.line_shape, scene.names[0]
+    enlarged = f"Motion {ENLARGED} times enlarged over the heights. {ILLUSTRATION}"
+    if scene.together:
+        frame = motion.wires[0].rise_mm.frames // 2
+        others = ", ".join(scene.names[1:])
+        caption = (
+            f"Passage of {name} at {motion.start_s + frame * motion.step_s:.3f} s; over it moves {others}. {enlarged}"
+        )
+    else:
+        frame = max(0, math.floor(-motion.start_s / motion.step_s))
+        caption = f"{name}: the line under the mass, at the release. {enlarged}"
+    svg = draw_instant(motion, shape, (shape.supports_m[0], shape.supports_m[0]), frame)
+    curves = doc.Curves("passage", number)
+    return doc.Figure(svg, caption, caption, anchor=f"scene-{number + 1}", curves=curves)

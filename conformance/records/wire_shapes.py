@@ -18,6 +18,7 @@ import numpy as np
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.hdf5_table import open_hdf5, read_numbers
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.texts import DocumentationPage
 
 MOST_SHAPE_VALUES = 8_000_000
 """Largest number of values of a file: 4000 frames of 2000 points."""
@@ -28,7 +29,7 @@ LARGEST_RISE_M = 10.0
 POSITION = re.compile(r"((?:contact|messenger|stitch)_wire)(?:_([1-9]\d?))?_position_m")
 """Name of the positions of a wire: its kind, and its number among those of the kind."""
 
-SHAPES_HINT = "See the page on systems under test."
+SHAPES_HINT = f"See {DocumentationPage.SYSTEMS}."
 
 
 @dataclass(frozen=True)

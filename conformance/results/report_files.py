@@ -23,8 +23,9 @@ FILES = {
     "badge": "badge.svg",
     "annotations": "annotations.txt",
     "codequality": "codequality.json",
+    "figures": "figures",
 }
-"""File that each format is written to."""
+"""File that each format is written to; of the figures, their folder."""
 
 
 DEFAULT_FORMATS = ("html", "pdf", "json", "csv", "junit", "md")

@@ -46,9 +46,11 @@ def film_delivery(case: Case, record: Record, path: Path) -> DeliveredFilm:
     )
     where, span = f"shapes '{path.name}'", record.time[[0, -1]]
     if shapes.time[0] < span[0] - 0.5 / record.rate or shapes.time[-1] > span[1] + 0.5 / record.rate:
-        found = f"the frames from {shapes.time[0]:g} s to {shapes.time[-1]:g} s"
-        hint = f"Give frames from {span[0]:g} s to {span[1]:g} s, the time of the record."
-        raise InputError(f"{where}, data set time_s", found, hint)
+        raise InputError(
+            f"{where}, data set time_s",
+            f"found frames from {shapes.time[0]:g} s to {shapes.time[-1]:g} s",
+            f"Give frames from {span[0]:g} s to {span[1]:g} s, the time of the record.",
+        )
     samples = np.rint((shapes.time - record.time[0]) * record.rate).astype(np.intp).clip(0, record.time.size - 1)
     place = record.position[:, samples]
     passing = np.flatnonzero(((place >= shape.supports_m[0]) & (place <= shape.supports_m[-1])).any(0))
@@ -73,9 +75,10 @@ def _place_wires(shape: LineShape, shapes: WireShapes, where: str) -> PlacedWire
         index, curve = curves[number - 1]
         inside = (place >= curve.x_m[0] - 1e-6) & (place <= curve.x_m[-1] + 1e-6)
         if inside.sum() < 2:
-            found = f"has no points from {curve.x_m[0]:g} m to {curve.x_m[-1]:g} m"
             raise InputError(
-                f"{where}, {kind.replace('_', ' ')} {number}", found, "Give its shape near the analysis section."
+                f"{where}, {kind.replace('_', ' ')} {number}",
+                f"has no points from {curve.x_m[0]:g} m to {curve.x_m[-1]:g} m",
+                "Give its shape near the analysis section.",
             )
         placed.append((index, curve, place[inside], rise[:, inside]))
     return placed

@@ -11,16 +11,9 @@ function csvText(headings, rows) {
   return [headings, ...rows].map((row) => row.map(csvField).join(",") + "\n").join("");
 }
 
-/** Offer a text as a file to the reader. */
-function saveFile(name, text) {
-  const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
-  element("a", { href: address, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(address), 10_000);
-}
-
 /** Button that saves a table; the rows are made when it is pressed. */
 function saveButton(label, name, headings, makeRows) {
   const button = element("button", { type: "button" }, label);
-  button.addEventListener("click", () => saveFile(`${name}.csv`, csvText(headings, makeRows())));
+  button.addEventListener("click", () => saveFile(`${name}.csv`, csvText(headings, makeRows()), "text/csv"));
   return button;
 }

@@ -19,7 +19,7 @@ from pantocheck.conformance.core.validation_messages import build_input_error
 from pantocheck.conformance.execution.plan import Plan, read_plan, split_names
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.results.administration import read_administration
-from pantocheck.conformance.results.report_files import DEFAULT_FORMATS, LANGUAGES
+from pantocheck.conformance.results.report_files import DEFAULT_FORMATS, FILES, LANGUAGES
 
 SetOption = Annotated[
     list[str] | None,
@@ -51,7 +51,7 @@ OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", 
 FormatsOption = Annotated[
     str | None,
     typer.Option(
-        help="Formats to write, separated by commas: html, pdf, json, csv, junit, md, badge, annotations, codequality.",
+        help=f"Formats to write, separated by commas: {', '.join(FILES)}.",
         show_default=",".join(DEFAULT_FORMATS),
     ),
 ]
