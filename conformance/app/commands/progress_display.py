@@ -12,7 +12,7 @@ file, pipe or log      one line every `LOG_INTERVAL_S`, none for a shorter comma
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import timedelta
 
@@ -24,10 +24,8 @@ from pantocheck.conformance.app.commands.command_output import ROOT_LOGGER
 from pantocheck.conformance.app.commands.console import error_console
 from pantocheck.conformance.app.commands.guard import strip_control_characters
 from pantocheck.conformance.app.commands.output_settings import current_settings
-from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.step_log import TaskStep
 from pantocheck.conformance.results.results_format import CaseResult
-from pantocheck.conformance.runs.reference_simulator import estimate_work
 
 _LOGGER = logging.getLogger(__name__)
 
@@ -192,15 +190,8 @@ def follow_steps(title: str, total: int = 1, work: Mapping[str, float] | None = 
 
 @contextmanager
 def report_cases(
-    cases: Sequence[Case], title: str = "running cases", further: int = 0
+    cases: int, title: str = "running cases", work: Mapping[str, float] | None = None
 ) -> Iterator[Callable[[CaseResult], None]]:
-    """Show the progress of cases by their work; yields the callback of the runner.
-
-    Args:
-        cases: Cases to run.
-        title: Purpose of the runs.
-        further: Number of further runs whose results come in the same way.
-    """
-    work = {} if further else {case.id: estimate_work(case) for case in cases}
-    with follow_steps(title, len(cases) + further, work) as progress:
+    """Show the progress of cases; yields the callback of the runner. Parameters as in `TaskProgress`."""
+    with follow_steps(title, cases, work) as progress:
         yield lambda result: progress.finish_task(result.id)

@@ -48,6 +48,7 @@ from pantocheck.conformance.pages.report_writers import remark_missing_formats, 
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.results.report_files import FILES, check_formats
 from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.runs.reference_simulator import estimate_work
 from pantocheck.conformance.runs.system_choice import use_threads
 
 CasesArgument = Annotated[
@@ -180,8 +181,9 @@ def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Inter
         error_console().print(escape_text(f"cases added: {'; '.join(parts)}"), soft_wrap=True)
     jobs = min(plan.jobs, len(cases))
     system = use_threads(system, plan.jobs // jobs)
+    work = {case.id: estimate_work(case) for case in cases}
     try:
-        with report_cases(cases) as progress:
+        with report_cases(len(cases), work=work) as progress:
             follow = interruption.follow(progress, len(cases))
             results = run_cases(cases, system, plan.trust, jobs, follow, prepared.participation)
     except RunInterrupted as interrupted:
@@ -189,7 +191,7 @@ def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Inter
     if not with_reference or interruption.exit_code:
         return results, 0
     try:
-        with report_cases(cases, "reference simulator") as progress:
+        with report_cases(len(cases), "reference simulator", work) as progress:
             return add_reference(results, cases, jobs, interruption.follow(progress, len(cases))), 0
     except RunInterrupted as interrupted:
         return interrupted.results, interrupted.exit_code

@@ -68,9 +68,9 @@ def validate_command(
     content = read_dossier(dossier)
     system = choose_system(content.system, content.file.timeout_s)
     check_writable(folder)
-    interrupted = 0
+    runs, interrupted = len(content.cases) + len(content.file.pair), 0
     try:
-        with report_cases(content.cases, "running cases and line tests", len(content.file.pair)) as progress:
+        with report_cases(runs, "running cases and line tests") as progress:
             results = Validation(content, system, folder, jobs, progress).run()
     except RunInterrupted as interruption:
         results, interrupted = interruption.results, interruption.exit_code
