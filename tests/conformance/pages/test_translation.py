@@ -83,7 +83,14 @@ ELSEWHERE = (
     *("records/record_summary", "records/sidecar_tables", "records/channel_facts", "records/track_position"),
     *("records/source_reading", "records/source_tables", "records/table_rows"),
     *("records/column_values", "records/samples", "results/", "runs/program", "runs/command_system"),
-    *("runs/protocol_messages", "runs/reference_simulator", "pages/html", "pages/page_code", "__init__"),
+    *(
+        "runs/protocol_messages",
+        "runs/reference_simulator",
+        "runs/core_requirement",
+        "pages/html",
+        "pages/page_code",
+        "__init__",
+    ),
 )
 """Modules whose texts no certificate shows: messages on input, the terminal, and other reports."""
 SHOWN = (
