@@ -3,6 +3,7 @@
 The claims rest on every step: none of them passes then, and all other steps do.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,9 @@ import pytest
 from helpers.example_dossier import CachedSimulator, Spoil, copy_example, edit_column, list_verdicts, validate_example
 from helpers.toml_edit import edit_toml, write_toml
 from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.dossier import validation
+from pantocheck.conformance.dossier.line_test_step import LineTests
+from pantocheck.conformance.dossier.step_result import StepResult
 from pantocheck.conformance.results.procedure_format import STEP_NAMES
 
 ALL_PASS = dict.fromkeys(STEP_NAMES, "pass")
@@ -217,17 +221,57 @@ def rest_claims_on(steps: dict[str, str]) -> dict[str, str]:
     return {"limits_of_validity": max(worst, "skip", key=ORDER.index)}
 
 
-@pytest.mark.parametrize("name", [*VARIANTS, *FULL_VARIANTS])
-def test_variant_has_the_verdict_of_its_step(system: CachedSimulator, tmp_path: Path, name: str) -> None:
+UNCHANGED_RUNS: dict[str, StepResult] = {}
+"""Results of the reference models and of the line test of the complete dossier with one pair."""
+
+
+@pytest.fixture
+def _keep_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a variant of the other steps take both steps from the first one, whose files are the same."""
+
+    def keep(name: str, step: Callable[..., StepResult]) -> Callable[..., StepResult]:
+        def carry_out(*arguments: Any) -> StepResult:
+            if name not in UNCHANGED_RUNS:
+                UNCHANGED_RUNS[name] = step(*arguments)
+            return UNCHANGED_RUNS[name]
+
+        return carry_out
+
+    monkeypatch.setattr(validation, "run_reference_models", keep("reference", validation.run_reference_models))
+    monkeypatch.setattr(LineTests, "run", keep("line test", LineTests.run))
+
+
+SAME_RUNS = {n: v for n, v in VARIANTS.items() if not {"reference_models", "line_test"} & v.expected.keys()}
+"""Variants of the other steps."""
+
+
+def check_variant(variant: Variant, keys: dict[str, Any], system: CachedSimulator, folder: Path) -> None:
     """No PASS overall; all verdicts follow from the numbers of results.json."""
-    variant = VARIANTS.get(name) or FULL_VARIANTS[name]
-    path = copy_example(tmp_path / "in", (ONE_PAIR if name in VARIANTS else {}) | variant.changes)
+    path = copy_example(folder / "in", keys | variant.changes)
     variant.spoil(path.parent)
-    results = validate_example(path, system, tmp_path / "out")
+    results = validate_example(path, system, folder / "out")
     assert list_verdicts(results) == ALL_PASS | rest_claims_on(variant.expected) | variant.expected
     worst = min(variant.expected.values(), key=ORDER.index)
     assert results.verdict == worst
     assert find_discrepancies(results) == []
+
+
+@pytest.mark.usefixtures("_keep_runs")
+@pytest.mark.parametrize("name", SAME_RUNS)
+def test_variant_with_the_same_runs_has_the_verdict_of_its_step(
+    system: CachedSimulator, tmp_path: Path, name: str
+) -> None:
+    check_variant(SAME_RUNS[name], ONE_PAIR, system, tmp_path)
+
+
+@pytest.mark.parametrize("name", [name for name in VARIANTS if name not in SAME_RUNS])
+def test_variant_of_the_runs_has_the_verdict_of_its_step(system: CachedSimulator, tmp_path: Path, name: str) -> None:
+    check_variant(VARIANTS[name], ONE_PAIR, system, tmp_path)
+
+
+@pytest.mark.parametrize("name", FULL_VARIANTS)
+def test_variant_of_all_pairs_has_the_verdict_of_its_step(system: CachedSimulator, tmp_path: Path, name: str) -> None:
+    check_variant(FULL_VARIANTS[name], {}, system, tmp_path)
 
 
 def split_masts(offset: float) -> Spoil:
