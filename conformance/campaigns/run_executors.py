@@ -15,6 +15,7 @@ from typing import Any, Protocol
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_file import ClusterKind, Execution
 from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
+from pantocheck.conformance.core.dask_client import connect_client
 from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.processes import adopt_orphans, end_workers, handle_worker_signals, limit_threads
@@ -179,8 +180,6 @@ TASK_S, MOST_RUNS = 5.0, 200
 CAPACITY_S = 1.0
 """Time after which the threads of the cluster are counted again [s]; each count is a message and its answer."""
 
-CONNECTION_TIMEOUT_S = 30
-
 _CLASSES: dict[ClusterKind, str] = {
     "slurm": "SLURMCluster",
     "pbs": "PBSCluster",
@@ -273,14 +272,7 @@ def call_execution(execute: Execute, run: PlannedRun) -> RunRow:
 @contextmanager
 def connect_scheduler(address: str) -> Iterator[DaskExecutor]:
     """Connect to a running scheduler, such as `tcp://host:8786`."""
-    with refuse_missing_package("campaign"):
-        import distributed
-    try:
-        client = distributed.Client(address, timeout=CONNECTION_TIMEOUT_S)
-    except (OSError, ValueError) as error:
-        found = f"cannot be reached ({' '.join(str(error).split())[:200]})"
-        raise InputError(f"scheduler '{address}'", found, "Start one with `dask scheduler`.") from None
-    with client:
+    with connect_client(address, "campaign") as client:
         yield DaskExecutor(client)
 
 

@@ -141,12 +141,12 @@ def write_atomically(path: Path, content: bytes) -> None:
     produce_atomically(path, lambda temporary: temporary.write_bytes(content))
 
 
-def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
-    """Write a temporary file beside `path`, then move it into place; a failure leaves no file.
+@contextmanager
+def stage_file(path: Path) -> Iterator[Path]:
+    """Path of a temporary file beside `path`, which is moved into place; a failure leaves no file.
 
     Args:
         path: File to write; a missing folder is created.
-        produce: Function that writes the content to the path of the temporary file.
 
     Raises:
         InputError: The folder cannot be created or written.
@@ -157,11 +157,17 @@ def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
         os.close(handle)
         temporary = Path(name)
         try:
-            produce(temporary)
+            yield temporary
             temporary.chmod(0o644)
             temporary.replace(path)
         finally:
             temporary.unlink(missing_ok=True)
+
+
+def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
+    """Write a file by a function that takes the path of a temporary file, as in `stage_file`."""
+    with stage_file(path) as temporary:
+        produce(temporary)
 
 
 def check_writable(folder: Path) -> None:

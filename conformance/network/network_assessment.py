@@ -2,8 +2,9 @@
 
 import tempfile
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict, judge_parts, worst_verdict
 from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.network.run_collection import RefusedFile, StoredRun
+from pantocheck.conformance.network.run_workers import MapRuns
 from pantocheck.conformance.network.section_grading import (
     NETWORK_QUANTITIES,
     grade_run,
@@ -74,53 +76,89 @@ class AssessmentTask:
     """Folder for the forces of one track; None: that of temporary files."""
 
 
-def assess_network(
-    runs: Iterable[StoredRun],
-    refused: Sequence[RefusedFile],
-    task: AssessmentTask,
-    report: Callable[[StoredRun, list[SectionPassage]], None],
-) -> NetworkResults:
-    """Grade every section of a collection; the samples of one run are in memory at a time.
+@dataclass(frozen=True)
+class AssessedTrack:
+    """Sections of one track of a line with the findings along it."""
+
+    runs: int
+    passages: int
+    """Passages over sections, complete or not."""
+    groups: tuple[SectionGroup, ...]
+    places: tuple[ForcePlace, ...]
+    misplaced: tuple[MisplacedRun, ...]
+    unusual: tuple[UnusualValue, ...]
+    suspicious: dict[str, tuple[str, ...]]
+    """Remarks on the runs."""
+
+
+RunPassages = list[tuple[StoredRun, list[SectionPassage]]]
+"""Runs of a track with their passages."""
+
+
+def assess_tracks(
+    runs: Iterable[StoredRun], task: AssessmentTask, map_runs: MapRuns = map
+) -> Iterator[tuple[AssessedTrack, RunPassages]]:
+    """Grade the sections of a collection, one track after the other, with the passages of its runs.
+
+    The samples of one run are in memory at a time, in each process.
 
     Args:
         runs: Runs in the order of line and track.
-        refused: Files that were refused.
         task: Rules and grouping.
-        report: Function that receives the passages of each run when its track is graded.
+        map_runs: Function that grades the runs of a track.
 
     Raises:
-        InputError: There is no run, or the files of one are damaged.
+        InputError: The files of a run are damaged.
     """
-    groups: list[SectionGroup] = []
-    places: list[ForcePlace] = []
-    misplaced: list[MisplacedRun] = []
-    unusual: list[UnusualValue] = []
-    suspicious, runs_read, passages_read = dict[str, tuple[str, ...]](), 0, 0
     for (line, track), part in groupby(runs, key=lambda run: (run.facts.line, run.facts.track)):
         here = list(part)
-        own = list_tension_sections(task.known_places, line, track)
+        places = tuple(place for place in task.known_places if (place.line, place.track) == (line, track))
         ends = [(min(x.facts.from_km, x.facts.to_km), max(x.facts.from_km, x.facts.to_km)) for x in here]
-        own = own or list_grid(line, track, ends, task.length_km)
-        passages: list[list[SectionPassage]] = []
+        own = list_tension_sections(places, line, track) or list_grid(line, track, ends, task.length_km)
         with tempfile.TemporaryDirectory(dir=task.scratch) as scratch:
-            profiles: list[ForceProfile] = []
-            for run in here:
-                graded = list(grade_run(run, own, task.profile, task.trust))
-                profiles += write_profiles(graded, task.known_places, Path(scratch))
-                passages.append([item.passage for item in graded])
-            found, wrong = compare_passages(profiles, task.known_places)
-        suspicious |= {run.facts.run: run.facts.remarks for run in here if run.facts.remarks}
-        for run, items in zip(here, passages, strict=True):
-            items[:] = _lower_misplaced(items, wrong)
-            report(run, items)
+            grade = partial(_grade_run, sections=own, places=places, task=task, scratch=Path(scratch).absolute())
+            graded = list(map_runs(grade, here))
+            found, misplaced = compare_passages(
+                [profile for _, own_profiles in graded for profile in own_profiles], places
+            )
+        passages = [_lower_misplaced(items, misplaced) for items, _ in graded]
         rows = _group([passage for items in passages for passage in items], own, task.by)
-        groups += [group for group, _ in rows]
-        places = _keep_worst(places + found)
-        misplaced += wrong
-        unusual += _compare_sections(rows)
-        runs_read, passages_read = runs_read + len(here), passages_read + sum(map(len, passages))
-    if not runs_read:
+        result = AssessedTrack(
+            runs=len(here),
+            passages=sum(map(len, passages)),
+            groups=tuple(group for group, _ in rows),
+            places=tuple(_keep_worst(found)),
+            misplaced=tuple(misplaced),
+            unusual=tuple(_compare_sections(rows)),
+            suspicious={run.facts.run: run.facts.remarks for run in here if run.facts.remarks},
+        )
+        yield result, list(zip(here, passages, strict=True))
+
+
+def _grade_run(
+    run: StoredRun, sections: Sequence[TrackSection], places: Sequence[KnownPlace], task: AssessmentTask, scratch: Path
+) -> tuple[list[SectionPassage], list[ForceProfile]]:
+    """Passages of a run over the sections of its track, and its forces in files of the folder `scratch`."""
+    graded = list(grade_run(run, sections, task.profile, task.trust))
+    return [item.passage for item in graded], write_profiles(graded, places, scratch)
+
+
+def combine_tracks(
+    tracks: Sequence[AssessedTrack], refused: Sequence[RefusedFile], task: AssessmentTask
+) -> NetworkResults:
+    """Results of a collection from those of its tracks.
+
+    Args:
+        tracks: Tracks in the order of line and track.
+        refused: Files that were refused.
+        task: Rules and grouping.
+
+    Raises:
+        InputError: There is no run.
+    """
+    if not tracks:
         raise InputError("collection", "has no run", "Import files: pantocheck runs import FILE ... --out DIR.")
+    groups = [group for track in tracks for group in track.groups]
     verdict, reason = judge_network(groups, refused)
     lengths = {_key(group.section): group.section.to_km - group.section.from_km for group in groups}
     measured = {_key(group.section) for group in groups if group.passages}
@@ -131,18 +169,25 @@ def assess_network(
         by=task.by,
         verdict=verdict,
         reason=reason,
-        runs=runs_read,
-        passages=passages_read,
+        runs=sum(track.runs for track in tracks),
+        passages=sum(track.passages for track in tracks),
         measured_km=round(sum(lengths[key] for key in measured), 6),
         total_km=round(sum(lengths.values()), 6),
         groups=tuple(groups),
-        places=tuple(places),
-        misplaced=tuple(misplaced),
-        unusual=tuple(unusual),
+        places=tuple(_keep_worst([place for track in tracks for place in track.places])),
+        misplaced=tuple(run for track in tracks for run in track.misplaced),
+        unusual=tuple(value for track in tracks for value in track.unusual),
         known_places=task.known_places,
         refused=tuple(RefusedImport(file=item.file, reason=item.reason) for item in refused),
-        suspicious=suspicious,
+        suspicious={run: remarks for track in tracks for run, remarks in track.suspicious.items()},
     )
+
+
+def assess_network(
+    runs: Iterable[StoredRun], refused: Sequence[RefusedFile], task: AssessmentTask, map_runs: MapRuns = map
+) -> NetworkResults:
+    """Grade every section of a collection; parameters and errors as of `assess_tracks` and `combine_tracks`."""
+    return combine_tracks([track for track, _ in assess_tracks(runs, task, map_runs)], refused, task)
 
 
 def _keep_worst(places: Sequence[ForcePlace]) -> list[ForcePlace]:

@@ -154,7 +154,8 @@ def select_stretch(
         return samples
     inside = (position.max(axis=0) >= section[0] - MARGIN_M) & (position.min(axis=0) <= section[1] + MARGIN_M)
     begin, finish = time[np.flatnonzero(inside)[[0, -1]]]
-    return samples.select((time >= begin - MARGIN_S) & (time <= finish + MARGIN_S))
+    first, last = np.searchsorted(time, begin - MARGIN_S), np.searchsorted(time, finish + MARGIN_S, "right")
+    return samples.select(slice(int(first), int(last)))
 
 
 def _evaluate(samples: RecordSamples, sidecar: RecordSidecar, profile: Profile, run: StoredRun) -> AssessedRecord:

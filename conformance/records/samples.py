@@ -44,10 +44,10 @@ class RecordSamples:
     sources: RecordSources = field(default_factory=RecordSources)
     """Further sources with their own times."""
 
-    def select(self, mask: NDArray[np.bool_]) -> "RecordSamples":
-        """Samples inside a mask."""
-        parts = {name: getattr(self, name) for name in _SAMPLED}
-        return replace(self, **{name: value[..., mask] for name, value in parts.items() if value is not None})
+    def select(self, part: NDArray[np.bool_] | slice) -> "RecordSamples":
+        """Samples inside a mask or a slice."""
+        values = {name: getattr(self, name) for name in _SAMPLED}
+        return replace(self, **{name: value[..., part] for name, value in values.items() if value is not None})
 
 
 _WITH_GAPS = ("uplift", "event_level", "arcing", "loaded")

@@ -7,6 +7,18 @@ import tomli_w
 
 RATE = 500.0
 
+FORCE_PROFILE = """
+schema = "pantocheck.profile/1"
+name = "force"
+title = "Force"
+rule = [
+    { quantity = "mean_force_N", upper = { per_speed_squared = 0.00097, constant = 70.0 } },
+    { quantity = "cov_20", upper = 0.3 },
+    { quantity = "contact_loss_pct", upper = 0.1 },
+]
+"""
+"""Rules that the runs pass without a dip."""
+
 
 def write_run(
     folder: Path,

@@ -55,21 +55,24 @@ RUN_DEFECTS = ("none", "drifting zero", "gap", "half rate", "wrong kilometre", "
 OFFSETS_M = {"wrong kilometre": 250.0, "wrong clock": SPEED_KM_H / 3.6, "another place": None}
 ZERO_KM = 11.0
 NEAR_KM = 0.06
+DENSITIES_M3 = (1e-5, 1e-6, 1e-8)
+"""Irregularity of the contact wire of a rough segment; a tenth of it in an even one."""
 
 Truth = list[tuple[str, float]]
 """Kind and place [km] of each planted defect of the line; the start of a segment for its tension or wear."""
 
 
-def simulate_segment(number: int, random: np.random.Generator) -> tuple[RealArray, Truth]:
-    """Unfiltered force of one segment every `STEP_M`, and its defects by the distance from its start [km]."""
+def simulate_segment(number: int, random: np.random.Generator) -> tuple[RealArray, RealArray, Truth]:
+    """Unfiltered force and acceleration of the head every `STEP_M`, and defects by distance from the start [km]."""
     kind, spans, start = PLAN[number % len(PLAN)], FIRST + SPANS + BEHIND, (FIRST - 1) * SPAN_M
-    lengths = random.uniform(-0.003, 0.003, (spans, DROPPERS))
+    length_m, share = (0.001, 0.1) if is_even(number) else (0.003, 1.0)
+    lengths = random.uniform(-length_m, length_m, (spans, DROPPERS))
     changes = [
         f"line.geometry.spans={spans}",
         f"evaluated_spans=[{FIRST}, {FIRST + SPANS - 1}]",
         f"compared_spans=[{FIRST - 2}, {FIRST + SPANS - 1}]",
-        f"line.contact_wire.irregularity={{frequency_1_m=[0.02, 0.1, 0.5], density_m3=[1e-5, 1e-6, 1e-8], "
-        f"seed={random.integers(2**31)}}}",
+        f"line.contact_wire.irregularity={{frequency_1_m=[0.02, 0.1, 0.5], "
+        f"density_m3={[share * density for density in DENSITIES_M3]}, seed={random.integers(2**31)}}}",
     ]
     truth: Truth = []
     if kind == "local":
@@ -95,17 +98,26 @@ def simulate_segment(number: int, random: np.random.Generator) -> tuple[RealArra
     record = ReferenceSimulator().run_unrefined(load_entry(LIBRARY.find_id(CASE), parse_changes(changes))).record
     assert record is not None
     x = start + np.arange(0, SPANS * SPAN_M, STEP_M)
-    return np.interp(x, record.position[0], record.force[0]), truth
+    rise = np.gradient(np.gradient(record.contact_height[0], 1 / record.rate), 1 / record.rate)
+    force, acceleration = (np.interp(x, record.position[0], values) for values in (record.force[0], rise))
+    return force, acceleration, truth
 
 
-def recall_segment(number: int, seed: int, folder: Path) -> tuple[RealArray, Truth]:
+def recall_segment(number: int, seed: int, folder: Path) -> tuple[RealArray, RealArray, Truth]:
     """Segment of a seed, from the folder if it was simulated before."""
     path = folder / f"segment-{seed}-{number}.npz"
     if not path.exists():
-        force, truth = simulate_segment(number, np.random.default_rng((37, seed, number)))
-        np.savez(path, force=force.astype(np.float32), kinds=[x for x, _ in truth], km=[x for _, x in truth])
+        force, rise, truth = simulate_segment(number, np.random.default_rng((37, seed, number)))
+        signals = {"force": force.astype(np.float32), "acceleration": rise.astype(np.float32)}
+        np.savez(path, kinds=[x for x, _ in truth], km=[x for _, x in truth], **signals)
     with np.load(path) as kept:
-        return kept["force"].astype(float), list(zip(map(str, kept["kinds"]), map(float, kept["km"]), strict=True))
+        truth = list(zip(map(str, kept["kinds"]), map(float, kept["km"]), strict=True))
+        return kept["force"].astype(float), kept["acceleration"].astype(float), truth
+
+
+def is_even(number: int) -> bool:
+    """Whether a segment is of the even kind: every third seven of segments."""
+    return number // len(PLAN) % 3 == 2
 
 
 def write_runs(folder: Path, force: RealArray, random: np.random.Generator) -> list[Path]:
@@ -200,7 +212,7 @@ def count_seed(seed: int, segments: int, folder: Path) -> tuple[Counter[str], Co
             assert all(item.state != "refused" for item in import_files(files, runs, None))
         by = ("section", "speed", "direction", "pantograph")
         task = AssessmentTask(load_profile("acceptance-ac"), "secondary", by, LENGTH_KM / 2)
-        results = assess_network(list_runs(runs), list_refused(runs), task, lambda *_: None)
+        results = assess_network(list_runs(runs), list_refused(runs), task)
         days = {run.facts.run: run.facts.date.day // 3 for run in list_runs(runs)}
     planted, found, false = count_line_defects(results, truth)
     run_found, run_false = count_run_defects(results, days)

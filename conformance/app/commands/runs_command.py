@@ -4,7 +4,7 @@ import csv
 import time
 from collections import Counter
 from pathlib import Path
-from typing import Annotated, Any, get_args
+from typing import Annotated, get_args
 
 import typer
 
@@ -13,19 +13,24 @@ from pantocheck.conformance.app.commands.console import build_table, escape_text
 from pantocheck.conformance.app.commands.options import TrustOption, build_options
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.core.files import check_writable, produce_atomically
+from pantocheck.conformance.core.files import check_writable, stage_file
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
-from pantocheck.conformance.network.network_assessment import AssessmentTask, assess_network
+from pantocheck.conformance.network.network_assessment import (
+    AssessedTrack,
+    AssessmentTask,
+    assess_tracks,
+    combine_tracks,
+)
 from pantocheck.conformance.network.run_collection import (
     ImportedFile,
     ImportState,
-    StoredRun,
     import_files,
     list_refused,
     list_runs,
     open_collection,
 )
+from pantocheck.conformance.network.run_workers import open_workers
 from pantocheck.conformance.network.section_grading import NETWORK_QUANTITIES
 from pantocheck.conformance.network.track_places import read_places
 from pantocheck.conformance.pages.network_page import build_network_page, build_run_page
@@ -91,6 +96,13 @@ def runs_assess_command(
         typer.Option(help="Table of supports, tension sections and other places; may repeat."),
     ] = None,
     trust: TrustOption = None,
+    jobs: Annotated[int, typer.Option(help="Number of processes on this machine.", min=1, max=256)] = 1,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="Scheduler of Dask, such as tcp://host:8786; its workers share the folders."
+        ),
+    ] = None,
 ) -> CommandOutput:
     """Assess every section of the lines of a collection.
 
@@ -120,23 +132,23 @@ def runs_assess_command(
     out.mkdir(parents=True, exist_ok=True)
     begin = time.monotonic()
 
-    def assess(temporary: Path) -> None:
-        """Grade the runs, and write their passages into a table as they come."""
-        with temporary.open("w", newline="", encoding="utf-8") as file, follow_steps("runs", len(runs)) as progress:
-            table = csv.writer(file, lineterminator="\n")
-            table.writerow([*PASSAGE_COLUMNS, "speed_km_h", "whole", "verdict", "reason", *NETWORK_QUANTITIES])
-
-            def report(run: StoredRun, passages: list[SectionPassage]) -> None:
-                table.writerows(map(_list_cells, passages))
-                write_report(build_run_page(run.facts.run, passages), out / "runs" / f"{run.facts.run}.html")
-                progress.finish_task(run.facts.run)
-
-            found.append(assess_network(runs, list_refused(folder), task, report))
-
-    found: list[Any] = []
+    tracks: list[AssessedTrack] = []
     passages = out / "passages.csv"
-    produce_atomically(passages, assess)
-    results = found[0]
+    with (
+        stage_file(passages) as temporary,
+        temporary.open("w", newline="", encoding="utf-8") as file,
+        follow_steps("runs", len(runs)) as progress,
+        open_workers(jobs, scheduler) as map_runs,
+    ):
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*PASSAGE_COLUMNS, "speed_km_h", "whole", "verdict", "reason", *NETWORK_QUANTITIES])
+        for track, graded in assess_tracks(runs, task, map_runs):
+            tracks.append(track)
+            for run, items in graded:
+                writer.writerows(map(_list_cells, items))
+                write_report(build_run_page(run.facts.run, items), out / "runs" / f"{run.facts.run}.html")
+                progress.finish_task(run.facts.run)
+    results = combine_tracks(tracks, list_refused(folder), task)
     files = [out / "index.html", out / "network.json", passages]
     write_model(files[1], results)
     write_report(build_network_page(results), files[0])

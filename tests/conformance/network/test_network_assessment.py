@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import tomli_w
 
-from helpers.measured_runs import write_run
+from helpers.measured_runs import FORCE_PROFILE, write_run
 from pantocheck.conformance.cases.profile_file import Profile, load_profile
 from pantocheck.conformance.comparison.profile_grading import grade_record
 from pantocheck.conformance.core.toml_file import read_toml
@@ -24,22 +24,11 @@ from pantocheck.conformance.results.network_format import NetworkResults, Sectio
 
 pytest.importorskip("pyarrow")
 
-PROFILE = """
-schema = "pantocheck.profile/1"
-name = "force"
-title = "Force"
-rule = [
-    { quantity = "mean_force_N", upper = { per_speed_squared = 0.00097, constant = 70.0 } },
-    { quantity = "cov_20", upper = 0.3 },
-    { quantity = "contact_loss_pct", upper = 0.1 },
-]
-"""
-
 
 @pytest.fixture(scope="module")
 def profile(tmp_path_factory: pytest.TempPathFactory) -> Profile:
     path = tmp_path_factory.mktemp("profile") / "force.toml"
-    path.write_text(PROFILE, encoding="utf-8")
+    path.write_text(FORCE_PROFILE, encoding="utf-8")
     return load_profile(str(path))
 
 
@@ -48,7 +37,7 @@ def assess(files: list[Path], folder: Path, profile: Profile, **changes: object)
         list(import_files(files, folder, None))
     task = AssessmentTask(profile, "provisional", ("section", "speed", "direction", "pantograph"), 0.5)
     task = replace(task, **changes)  # type: ignore[arg-type]
-    return assess_network(list_runs(folder), list_refused(folder), task, lambda *_: None)
+    return assess_network(list_runs(folder), list_refused(folder), task)
 
 
 def judge_sections(results: NetworkResults) -> dict[float, str]:

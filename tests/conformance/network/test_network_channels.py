@@ -71,7 +71,7 @@ def judge(graded: list[GradedPassage]) -> list[tuple[str, str]]:
 
 def assess(runs: Path, profile: Profile, by: tuple[str, ...] = ("section", "pantograph")) -> NetworkResults:
     task = AssessmentTask(profile, "provisional", by, 0.06)  # type: ignore[arg-type]
-    return assess_network(list_runs(runs), list_refused(runs), task, lambda *_: None)
+    return assess_network(list_runs(runs), list_refused(runs), task)
 
 
 def test_the_uplift_is_graded_with_its_own_clock(tmp_path: Path) -> None:

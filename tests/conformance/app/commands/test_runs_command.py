@@ -1,0 +1,96 @@
+"""`runs import` and `runs assess`: files of the output, equal tables of one process, several ones and a cluster."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from helpers.command_line import pantocheck
+from helpers.measured_runs import FORCE_PROFILE, write_run
+
+pytest.importorskip("pyarrow")
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Four runs of 1.5 km, two of them without a broken dropper; the last file is refused."""
+    folder = tmp_path_factory.mktemp("logger")
+    (folder / "force.toml").write_text(FORCE_PROFILE, encoding="utf-8")
+    files = [
+        write_run(folder, f"run{day}", ends_km=(10.0, 11.5), day=day, seed=day, dip_km=10.7 if day > 2 else None)
+        for day in (1, 2, 3, 4)
+    ]
+    damaged = write_run(folder, "damaged", ends_km=(10.0, 10.1))
+    damaged.write_text("", encoding="utf-8")
+    result = pantocheck("runs", "import", *files, damaged, "--out", folder / "runs")
+    assert result.exit_code == 2
+    assert "4 runs imported, 1 refused" in result.output
+    return folder / "runs"
+
+
+def assess(runs: Path, out: Path, *options: str) -> dict[str, bytes]:
+    """Files of an assessment."""
+    arguments = ("--profile", runs.parent / "force.toml", "--section-km", "0.5", "--out", out)
+    result = pantocheck("runs", "assess", runs, *arguments, *options)
+    assert result.exit_code == 1, result.output
+    return list_files(out)
+
+
+def list_files(out: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(out)): path.read_bytes() for path in out.rglob("*") if path.is_file()}
+
+
+def test_every_file_is_written_and_a_failure_ends_with_one(runs: Path, tmp_path: Path) -> None:
+    files = assess(runs, tmp_path / "net")
+    names = [json.loads(path.read_text())["run"] for path in runs.glob("line=*/*/*/*/import.json")]
+    assert set(files) == {"index.html", "network.json", "passages.csv", *(f"runs/{name}.html" for name in names)}
+    results = json.loads(files["network.json"])
+    assert (results["verdict"], results["runs"], results["passages"]) == ("fail", 4, 12)
+    assert results["reason"].endswith("1 files refused")
+    rows = list(csv.DictReader(files["passages.csv"].decode().splitlines()))
+    assert {(row["from_km"], row["verdict"]) for row in rows} == {
+        *((km, "pass") for km in ("10.0", "10.5", "11.0")),
+        ("10.5", "fail"),
+    }
+
+
+def test_processes_give_the_files_of_one_process(runs: Path, tmp_path: Path) -> None:
+    assert assess(runs, tmp_path / "two", "--jobs", "2") == assess(runs, tmp_path / "one")
+
+
+@pytest.mark.thorough
+def test_a_cluster_gives_the_files_of_one_process(runs: Path, tmp_path: Path) -> None:
+    """In a process of its own: the threads of Dask would outlive the test."""
+    pytest.importorskip("distributed")
+    arguments = [
+        "--profile",
+        str(runs.parent / "force.toml"),
+        "--section-km",
+        "0.5",
+        "--out",
+        str(tmp_path / "cluster"),
+    ]
+    command = [sys.executable, "-m", "helpers.dask_network", str(runs), *arguments]
+    settings = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run(command, env=settings, timeout=300, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert list_files(tmp_path / "cluster") == assess(runs, tmp_path / "one")
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--by", "section,weather"], "option --by: found 'weather'"),
+        (["--profile", "line-test"], "compares with a measured record"),
+    ],
+)
+def test_wrong_options_are_named(options: list[str], message: str, runs: Path, tmp_path: Path) -> None:
+    given = ["--profile", "acceptance-ac", "--out", str(tmp_path / "net"), *options]
+    result = pantocheck("runs", "assess", runs, *given)
+    assert result.exit_code == 2
+    assert message in result.output
+    assert not (tmp_path / "net").exists()
