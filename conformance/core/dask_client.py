@@ -8,6 +8,7 @@ from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.input_error import InputError
 
 CONNECTION_TIMEOUT_S = 30
+"""Time after which a scheduler that does not answer is given up [s]."""
 
 
 @contextmanager

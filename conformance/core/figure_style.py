@@ -29,7 +29,8 @@ INK, GREY, PALE = _LOOK["light"]["ink"], _LOOK["figure"]["grey"], _LOOK["figure"
 SHADES: tuple[str, ...] = tuple(_LOOK["figure"]["shades"])
 BAR_FILLS: tuple[str, ...] = (*_LOOK["figure"]["bars"], "white", "white")
 LIMIT_FILL: str = _LOOK["figure"]["limit"]
-CROSS: str = _LOOK["light-verdict"]["fail"]
+VERDICT_COLOURS: dict[str, str] = _LOOK["light-verdict"]
+CROSS = VERDICT_COLOURS["fail"]
 CURVES: tuple[str, ...] = tuple(value for key, value in _LOOK["light"].items() if key.startswith("curve-"))
 """Colours of curves that line style and lightness alone do not tell apart."""
 

@@ -18,8 +18,10 @@ TENSION_SECTION = "tension_section"
 PLACE_KINDS = (*get_args(EventKind), TENSION_SECTION)
 """Kinds of places; a row without a kind is a support."""
 
-PLACE_COLUMNS = ("line", "track", "kind", "from_m", "to_m", *SUPPORT_COLUMNS)
-"""Columns of a table of assets: those of a table of supports, and the ends of a stretch."""
+LATITUDE, LONGITUDE = "latitude_deg", "longitude_deg"
+
+PLACE_COLUMNS = ("line", "track", "kind", "from_m", "to_m", LATITUDE, LONGITUDE, *SUPPORT_COLUMNS)
+"""Columns of a table of assets: those of a table of supports, the ends of a stretch, and coordinates (WGS 84)."""
 
 EXPLAINING = frozenset({"overlap", "section_insulator", "neutral_section", "switch"})
 """Kinds of places at which a deviation of the force is expected."""
@@ -50,11 +52,15 @@ def _build_place(row: TypedRow, line: str | None, track: str | None, problems: l
     begin, end = (row.number(column) for column in ("from_m", "to_m"))
     position = row.number(POSITION)
     kind = str(row.values.get("kind", "support"))
+    latitude, longitude = row.number(LATITUDE), row.number(LONGITUDE)
     own_line, own_track = row.values.get("line", line), row.values.get("track", track)
     if kind not in PLACE_KINDS:
         problems.append(
             InputError(row.place, f"has the unknown kind {kind[:40]!r}", f"Known are {', '.join(PLACE_KINDS)}.")
         )
+    elif (latitude is None) != (longitude is None) or abs(latitude or 0.0) > 90 or abs(longitude or 0.0) > 180:
+        found = f"has the latitude {latitude} and the longitude {longitude}"
+        problems.append(InputError(row.place, found, "Give both in decimal degrees, or neither."))
     elif own_line is None or own_track is None:
         problems.append(InputError(row.place, "names no line or track", "Add the columns line and track."))
     elif (begin is None or end is None) and position is None:
@@ -63,7 +69,14 @@ def _build_place(row: TypedRow, line: str | None, track: str | None, problems: l
         low, high = sorted(x for x in (begin, end) if x is not None) if position is None else (position, position)
         name = str(row.values.get("name", row.values.get("number", "")))
         return KnownPlace(
-            line=str(own_line), track=str(own_track), kind=kind, name=name, from_km=low / 1000, to_km=high / 1000
+            line=str(own_line),
+            track=str(own_track),
+            kind=kind,
+            name=name,
+            from_km=low / 1000,
+            to_km=high / 1000,
+            latitude_deg=latitude,
+            longitude_deg=longitude,
         )
     return None
 

@@ -152,6 +152,8 @@ class Column:
     """Whether the column holds numbers, which are aligned to the right and never broken."""
     short: str = ""
     """Heading on paper where the column is narrow; empty: the same heading."""
+    choice: Literal["", "value", "date"] = ""
+    """Filter of the rows in HTML: by one of the values, or by a date in the period of a cell, such as `A to B`."""
 
 
 @dataclass(frozen=True)

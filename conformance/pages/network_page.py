@@ -1,12 +1,13 @@
 """Pages of an assessed collection: lines by kilometre, sections, worst places, and a page per run."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 
 from pantocheck.conformance.core.figure_data import Chart, Series
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.verdicts import WORST_FIRST
 from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.network_figures import draw_network_map, draw_trace, draw_track, list_coordinates
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import clean_text, clean_tree, format_value, quantity_label, quantity_unit
 from pantocheck.conformance.results.network_format import (
@@ -28,6 +29,8 @@ NETWORK_SCOPE = (
 NETWORK_COLUMNS = ("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N", "contact_loss_pct")
 """Quantities in the tables."""
 
+VALUES_IN_TABLES = "The values are in the tables."
+
 MOST_GROUPS = 20_000
 """Largest number of sections on the page; those that do not pass come first where there are more."""
 
@@ -43,6 +46,11 @@ def build_network_page(results: NetworkResults) -> doc.Document:
     tracks = groupby(results.groups, key=lambda group: (group.section.line, group.section.track))
     figures = tuple(_draw_track(*names, list(groups)) for names, groups in tracks)
     blocks.append(doc.Section("Lines by kilometre", (doc.Figures(figures),)))
+    if tracks_on_map := list_coordinates(results):
+        caption = "Map of the sections by verdict, with the worst places that no known place explains."
+        alternative = f"{caption} {VALUES_IN_TABLES}"
+        network_map = doc.Figure(draw_network_map(results, tracks_on_map), alternative, caption)
+        blocks.append(doc.Section("Map", (doc.Figures((network_map,)),)))
     if results.places:
         traced = [place for place in results.places if place.trace is not None]
         drawn = doc.Section("Force at the worst places", (doc.Figures(tuple(map(_draw_place, traced))),), folded=True)
@@ -71,11 +79,11 @@ def build_run_page(run: str, passages: Sequence[SectionPassage]) -> doc.Document
     """Page of one run: its passages over the sections."""
     passages = [clean_tree(passage) for passage in passages]
     cells = {
-        **{doc.Column(text): call for text, call in _name_section_cells().items()},
+        **_list_section_columns(),
         doc.Column("Pantograph"): lambda x: x.pantograph,
         doc.Column("Speed km/h", number=True): lambda x: format_value(x.speed_km_h),
         doc.Column("Verdict"): lambda x: doc.VerdictMark(x.verdict),
-        **{_head(name): lambda x, name=name: format_value(x.values.get(name)) for name in NETWORK_COLUMNS},
+        **{_head(name): lambda x, name=name: format_value(x.values.get(name)) for name in _list_known(passages)},
         doc.Column("Reason", share=1): lambda x: x.reason,
     }
     back = doc.Paragraph((doc.PageLink("All lines", "../index.html"),))
@@ -83,18 +91,20 @@ def build_run_page(run: str, passages: Sequence[SectionPassage]) -> doc.Document
     parts = () if first is None else (first.section.line, first.section.track, str(first.date), first.direction)
     headline = ", ".join(parts)
     table = doc.make_table(passages, cells)  # type: ignore[arg-type]
-    return doc.build_plain_document(f"Run {clean_text(run)}", headline or "No section is passed.", (back, table))
+    figures = doc.Figures(tuple(_draw_run(passages)))
+    blocks = (back, figures, table) if figures.figures else (back, table)
+    return doc.build_plain_document(f"Run {clean_text(run)}", headline or "No section is passed.", blocks)
 
 
 def _head(quantity: str) -> doc.Column:
     return doc.Column(f"{quantity_label(quantity)} [{quantity_unit(quantity)}]", number=True)
 
 
-def _name_section_cells() -> dict[str, object]:
+def _list_section_columns() -> dict[doc.Column, object]:
     return {
-        "Line": lambda x: x.section.line,
-        "Track": lambda x: x.section.track,
-        "Section": lambda x: _name_section(x.section),
+        doc.Column("Line", choice="value"): lambda x: x.section.line,
+        doc.Column("Track", choice="value"): lambda x: x.section.track,
+        doc.Column("Section", number=True): lambda x: _name_section(x.section),
     }
 
 
@@ -110,20 +120,32 @@ def _tabulate_groups(groups: Sequence[SectionGroup]) -> doc.Table:
     shown = list(groups)
     if len(shown) > MOST_GROUPS:
         shown = sorted(shown, key=lambda group: WORST_FIRST.index(group.verdict))[:MOST_GROUPS]
+    classes: dict[doc.Column, Callable[[SectionGroup], str]] = {
+        doc.Column("Speed km/h", choice="value"): _name_speed,
+        doc.Column("Kilometres", choice="value"): lambda x: x.direction or "",
+        doc.Column("Pantograph", choice="value"): lambda x: x.pantograph or "",
+    }
     cells = {
-        **{doc.Column(text): call for text, call in _name_section_cells().items()},
+        **_list_section_columns(),
         doc.Column("Passages", number=True): lambda x: str(x.passages),
-        doc.Column("Dates"): _name_dates,
-        doc.Column("Speed km/h"): lambda x: "" if x.speed_km_h is None else "{:g} to {:g}".format(*x.speed_km_h),
-        doc.Column("Kilometres"): lambda x: x.direction or "",
-        doc.Column("Pantograph"): lambda x: x.pantograph or "",
+        doc.Column("Dates", number=True, choice="date"): _name_dates,
+        **{column: call for column, call in classes.items() if any(map(call, shown))},
         doc.Column("Verdict"): lambda x: doc.VerdictMark(x.verdict),
-        **{_head(name): lambda x, name=name: _format_repeated(x, name) for name in NETWORK_COLUMNS},
+        **{_head(name): lambda x, name=name: _format_repeated(x, name) for name in _list_known(shown)},
         doc.Column("Reason", share=1): lambda x: x.reason,
         doc.Column("Run"): lambda x: _link_run(x.run) if x.run else "",
     }
     caption = "Filter by a date, speed, kilometre or verdict; the run is that of the worst passage"
     return doc.make_table(shown, cells, caption)  # type: ignore[arg-type]
+
+
+def _list_known(items: Sequence[SectionGroup | SectionPassage]) -> list[str]:
+    """Quantities that one of the groups or passages has."""
+    return [name for name in NETWORK_COLUMNS if any(name in item.values for item in items)]
+
+
+def _name_speed(group: SectionGroup) -> str:
+    return "" if group.speed_km_h is None else "{:g} to {:g}".format(*group.speed_km_h)
 
 
 def _format_repeated(group: SectionGroup, name: str) -> str:
@@ -139,18 +161,18 @@ def _link_run(run: str) -> doc.PageLink:
 
 def _tabulate_places(places: Sequence[ForcePlace]) -> doc.Table:
     cells = {
-        doc.Column("Line"): lambda x: x.line,
-        doc.Column("Track"): lambda x: x.track,
+        doc.Column("Line", choice="value"): lambda x: x.line,
+        doc.Column("Track", choice="value"): lambda x: x.track,
         doc.Column("km", number=True): lambda x: f"{x.km:.3f}",
         doc.Column("Force N", number=True): lambda x: format_value(x.force_N),
         doc.Column("Deviation", number=True): lambda x: f"{x.deviation:.1f}",
         doc.Column("Threshold", number=True): lambda x: f"{x.threshold:.1f}",
         doc.Column("Extent m", number=True): lambda x: f"{x.extent_m:g}",
         doc.Column("Seen in"): lambda x: f"{x.found} of {x.passages}",
-        doc.Column("Date"): lambda x: str(x.date),
+        doc.Column("Date", choice="date"): lambda x: str(x.date),
         doc.Column("Pantograph"): lambda x: x.pantograph,
         doc.Column("Place", share=1): lambda x: x.place,
-        doc.Column("Explained"): lambda x: "yes" if x.explained else "no",
+        doc.Column("Explained", choice="value"): lambda x: "yes" if x.explained else "no",
         doc.Column("Run"): lambda x: _link_run(x.run),
     }
     caption = "Deviation of the filtered force from the neighbouring spans, in robust standard deviations"
@@ -159,8 +181,8 @@ def _tabulate_places(places: Sequence[ForcePlace]) -> doc.Table:
 
 def _tabulate_misplaced(runs: Sequence[MisplacedRun]) -> doc.Table:
     cells = {
-        doc.Column("Line"): lambda x: x.line,
-        doc.Column("Track"): lambda x: x.track,
+        doc.Column("Line", choice="value"): lambda x: x.line,
+        doc.Column("Track", choice="value"): lambda x: x.track,
         doc.Column("Section"): lambda x: f"{x.from_km:.3f} to {x.to_km:.3f} km",
         doc.Column("Pantograph"): lambda x: x.pantograph,
         doc.Column("Offset m", number=True): lambda x: "–" if x.offset_m is None else f"{x.offset_m:.1f}",
@@ -174,7 +196,7 @@ def _tabulate_misplaced(runs: Sequence[MisplacedRun]) -> doc.Table:
 
 def _tabulate_unusual(values: Sequence[UnusualValue]) -> doc.Table:
     cells = {
-        **{doc.Column(text): call for text, call in _name_section_cells().items()},
+        **_list_section_columns(),
         doc.Column("Quantity"): lambda x: quantity_label(x.quantity),
         doc.Column("Value", number=True): lambda x: format_value(x.value),
         doc.Column("Expected", number=True): lambda x: format_value(x.expected),
@@ -186,27 +208,31 @@ def _tabulate_unusual(values: Sequence[UnusualValue]) -> doc.Table:
 
 
 def _draw_track(line: str, track: str, groups: Sequence[SectionGroup]) -> doc.Figure:
-    """Mean force of the sections of a track by kilometre, one series per verdict; 0 where it was not measured."""
-    series = []
-    for verdict in WORST_FIRST:
-        here = [group for group in groups if group.verdict == verdict]
-        if here:
-            x = [(group.section.from_km + group.section.to_km) / 2 for group in here]
-            y = [group.values["mean_force_N"].mean if "mean_force_N" in group.values else 0.0 for group in here]
-            style = "crosses" if verdict in ("error", "fail", "skip") else "points"
-            series.append(Series(label=verdict, style=style, x=x, y=y))
-    caption = f"Line {line}, track {track}: mean force of the sections; 0 where none is known."
-    return _draw(caption, "kilometre", "mean force [N]", series)
+    caption = f"Line {line}, track {track}: mean force of the sections with its lowest and highest value, and verdicts."
+    return doc.Figure(draw_track(groups), f"{caption} {VALUES_IN_TABLES}", caption)
+
+
+def _draw_run(passages: Sequence[SectionPassage]) -> Iterator[doc.Figure]:
+    """Statistics of the force by kilometre, one figure per pantograph."""
+    names = {"statistical_max_N": "mean + 3 sigma", "mean_force_N": "mean", "statistical_min_N": "mean - 3 sigma"}
+    for pantograph in dict.fromkeys(passage.pantograph for passage in passages):
+        own = [x for x in passages if x.pantograph == pantograph and names.keys() <= x.values.keys()]
+        middles = [(x.section.from_km + x.section.to_km) / 2 for x in own]
+        series = [
+            Series(label=label, style="line", x=middles, y=[x.values[name] for x in own])
+            for name, label in names.items()
+        ]
+        if len(own) > 1:
+            yield _draw(f"Pantograph {pantograph}: force by section.", "kilometre", "force [N]", series)
 
 
 def _draw_place(place: ForcePlace) -> doc.Figure:
     caption = f"Line {place.line}, track {place.track}, {place.km:.3f} km, {place.date}, run {place.run} {place.place}"
-    assert place.trace is not None  # chosen by the caller
-    return _draw(f"{caption.strip()}.", "kilometre", "filtered force [N]", [place.trace])
+    return doc.Figure(draw_trace(place), f"{caption.strip()}. {VALUES_IN_TABLES}", f"{caption.strip()}.", wide=False)
 
 
 def _draw(caption: str, x_label: str, y_label: str, series: list[Series]) -> doc.Figure:
-    alternative = f"{caption} The values are in the tables."
+    alternative = f"{caption} {VALUES_IN_TABLES}"
     chart = Chart(caption=caption, alternative=alternative, x_label=x_label, y_label=y_label, series=series)
     return doc.Figure(draw_chart(chart), alternative, caption)
 

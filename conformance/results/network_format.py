@@ -97,6 +97,9 @@ class KnownPlace(ResultsPart):
     name: str
     from_km: FiniteNumber
     to_km: FiniteNumber
+    latitude_deg: FiniteNumber | None = None
+    longitude_deg: FiniteNumber | None = None
+    """Coordinates of its first end for the map; null: not known."""
 
 
 class ForcePlace(ResultsPart):

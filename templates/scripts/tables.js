@@ -70,24 +70,46 @@ function verdictSelection(rows, label) {
   return element("select", { "aria-label": fill(translate("Verdict, {t}"), { t: label }) }, element("option", { value: "" }, translate("all verdicts")), ...options);
 }
 
-/** Put fields above a table that leave only the rows with a text and a verdict. */
+/** Fields of the columns that offer a choice, with a function that tells whether a row fits: a value, or a date in a period. */
+function columnChoices(table, rows, label) {
+  return [...table.tHead.rows[0].cells].flatMap((heading, column) => {
+    const { choice } = heading.dataset;
+    const texts = choice ? rows.map((row) => row.cells[column].textContent.trim()) : [];
+    const values = [...new Set(texts)].filter(Boolean).sort((a, b) => a.localeCompare(b, "en", { numeric: true }));
+    if (values.length < 2) return [];
+    const name = heading.textContent;
+    const described = { "aria-label": `${name}, ${label}` };
+    const field = choice === "date"
+      ? element("input", { type: "date", ...described })
+      : element("select", described, element("option", { value: "" }, "–"), ...values.map((value) => element("option", { value }, value)));
+    const fits = (row) => {
+      const [first, last = first] = row.cells[column].textContent.trim().split(" to ");
+      return choice === "date" ? first <= field.value && field.value <= last : row.cells[column].textContent.trim() === field.value;
+    };
+    return [{ field, part: element("label", {}, `${name} `, field), fits }];
+  });
+}
+
+/** Put fields above a table that leave only the rows with a text, a verdict and the choices of columns. */
 function addFilter(table, rows) {
   const label = table.getAttribute("aria-label");
   const field = element("input", { type: "search", placeholder: translate("Filter rows"), "aria-label": fill(translate("Filter rows, {t}"), { t: label }) });
   const selection = verdictSelection(rows, label);
+  const choices = columnChoices(table, rows, label);
   const count = element("output", { role: "status" });
   const filter = () => {
     const words = field.value.toLowerCase().split(/\s+/);
+    const chosen = choices.filter((choice) => choice.field.value);
     const left = rows.filter((row) => {
       const text = row.textContent.toLowerCase();
-      const fits = words.every((word) => text.includes(word)) && (!selection?.value || verdictsOfRow(row).has(selection.value));
+      const fits = words.every((word) => text.includes(word)) && (!selection?.value || verdictsOfRow(row).has(selection.value)) && chosen.every((choice) => choice.fits(row));
       row.classList.toggle("filtered", !fits);
       return fits;
     });
     count.value = left.length < rows.length ? fill(translate("{n} of {n2} rows"), { n: left.length, n2: rows.length }) : "";
   };
-  for (const control of [field, selection]) control?.addEventListener("input", filter);
-  table.parentElement.before(element("div", { class: "tools" }, ...[field, selection, count].filter(Boolean)));
+  for (const control of [field, selection, ...choices.map((choice) => choice.field)]) control?.addEventListener("input", filter);
+  table.parentElement.before(element("div", { class: "tools" }, ...[field, selection, ...choices.map(({ part }) => part), count].filter(Boolean)));
 }
 
 for (const table of document.querySelectorAll("table")) {

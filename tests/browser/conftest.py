@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from helpers.example_identification import build_example_line
+from helpers.example_network import build_network
 from helpers.example_passage import STEP_S, with_passage
 from helpers.example_results import chart, example, with_hostile_text, with_measured_run, with_reference
 from pantocheck.conformance.comparison.compared_run import ComparedRun
@@ -22,6 +23,7 @@ from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import Document, Figure, Figures, PlainHeader, Section, make_grid
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.identification_page import build_identification_document
+from pantocheck.conformance.pages.network_page import build_network_page
 from pantocheck.conformance.pages.run_comparison_page import build_run_comparison
 from pantocheck.conformance.pages.site_pages import build_site_index, order_results
 from pantocheck.conformance.pages.study_chart import draw_chart
@@ -97,7 +99,8 @@ def build_compared_page() -> Document:
 
 @pytest.fixture(scope="session")
 def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """Pages by name: certificates, one of them with hostile texts, a mass-drop report, and a page without results."""
+    """Pages by name: certificates, one of them with hostile texts, a mass-drop report, measured lines of
+    5,000 km, and a page without results."""
     documents = {
         "certificate": build_certificate(Results.model_validate(example())),
         "measured": build_certificate(Results.model_validate(with_measured_run())),
@@ -106,6 +109,7 @@ def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         "reference": build_certificate(Results.model_validate(with_reference())),
         "hostile": build_certificate(Results.model_validate(with_hostile_text())),
         "identification": build_identification_document([IdentifiedLine.model_validate(build_example_line())]),
+        "network": build_network_page(build_network()),
         "plain": build_plain_document(),
         "site": build_site_page(),
     }
@@ -142,10 +146,10 @@ def open_page(browser: Any, page_files: dict[str, Path]) -> Iterator[Opener]:
     """
     watch, contexts = Watch(), []
 
-    def open_named(name: str, width: int = WIDE, **options: Any) -> Any:
+    def open_named(name: str, width: int = WIDE, timeout_ms: int = 5000, **options: Any) -> Any:
         context = browser.new_context(viewport={"width": width, "height": 900}, **options)
         contexts.append(context)
-        context.set_default_timeout(5000)
+        context.set_default_timeout(timeout_ms)
         page = context.new_page()
         address = page_files[name].as_uri()
         watch.observe(page, address)

@@ -1,6 +1,7 @@
 """Assessment of a collection: equal to the assessment of each record, and no section passes without full cover."""
 
 import datetime
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import tomli_w
 from helpers.measured_runs import FORCE_PROFILE, write_run
 from pantocheck.conformance.cases.profile_file import Profile, load_profile
 from pantocheck.conformance.comparison.profile_grading import grade_record
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.network.network_assessment import AssessmentTask, assess_network, judge_network
@@ -245,6 +247,17 @@ def test_a_place_has_a_name_and_the_page_escapes_it(tmp_path: Path, profile: Pro
     )
     page = render_html(build_run_page(place.run, [item.passage for item in graded]))
     assert "10.000 to 11.000" in page
+
+
+@pytest.mark.parametrize(
+    ("row", "fault"),
+    [("17;10,5;47,25;8,5", None), ("17;10,5;47,25;", "longitude None"), ("17;10,5;147,0;8,5", "latitude 147.0")],
+)
+def test_coordinates_of_a_place_are_both_given_or_none(row: str, fault: str | None, tmp_path: Path) -> None:
+    (tmp_path / "places.csv").write_text(f"name;x_km;latitude_deg;longitude_deg\n{row}\n", encoding="utf-8")
+    with nullcontext() if fault is None else pytest.raises(InputError, match=fault):
+        (place,) = read_places(tmp_path / "places.csv", "1700", "2")
+        assert (place.from_km, place.latitude_deg, place.longitude_deg) == (10.5, 47.25, 8.5)
 
 
 def test_a_run_with_wrong_kilometres_is_named_and_passes_nothing(tmp_path: Path, profile: Profile) -> None:

@@ -77,7 +77,7 @@ ELSEWHERE = (
     *("pages/ci_reports", "pages/comparison_page", "pages/damping_page", "pages/identification", "pages/population"),
     *("pages/pantograph_pages", "pages/record_figures", "pages/run_comparison_page", "pages/site_pages"),
     *("pages/view_page", "pages/explore_page"),
-    *("network/", "pages/network_page", "runs/line_fmu", "runs/rig_"),
+    *("network/", "pages/network_", "runs/line_fmu", "runs/rig_"),
     *("pages/static_sections", "pages/translation", "pages/report_writers", "quantities/registry"),
     *("quantities/quantity.py", "records/record.py", "records/record_reading", "records/record_sidecar"),
     *("records/record_summary", "records/sidecar_tables", "records/channel_facts", "records/track_position"),
