@@ -32,7 +32,7 @@ from pantocheck.model import Pantograph
 from pantocheck.model.description.catenary import Catenary
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
-from pantocheck.model.dynamics.passage import ForeignPantograph, History, Passage
+from pantocheck.model.dynamics.passage import ForeignPantograph, FrameRequest, Frames, History, Passage
 from pantocheck.model.statics.contact_wires import touched_wires
 
 KEPT_SPANS = 1.5
@@ -54,6 +54,8 @@ class PassageRun:
     """FMUs that moved pantographs."""
     outputs: Mapping[str, RealArray] = field(default_factory=dict)
     """Recorded outputs of FMUs, (n,) each, by their names in a record."""
+    frames: Frames | None = None
+    """Requested frames of a moving picture."""
 
 
 def run_passage(
@@ -63,6 +65,7 @@ def run_passage(
     uplift_forces: tuple[float, ...] | None = None,
     progress: ShareCallback = ignore_progress,
     start_forces: tuple[float, ...] = (),
+    frames: FrameRequest | None = None,
 ) -> PassageRun:
     """Simulate the passage of a case on a discretised line.
 
@@ -75,6 +78,7 @@ def run_passage(
         progress: Called from time to time with the completed share, 0 to 1. The number of runs of a tuning is not
             known: each is half of the rest.
         start_forces: Uplift force of every pantograph at the start of its tuning [N]; empty: that of the case.
+        frames: Request of the frames of a moving picture.
 
     Returns:
         Record, run facts and uplift forces.
@@ -96,7 +100,7 @@ def run_passage(
             raise TuningFailed(f"FMU '{table.file}' names no variable of the uplift force, which the case tunes")
     shares = _halve_rest(progress) if any(targets) else iter([progress])
     return tune_uplift(
-        lambda forces: _run_once(case, line, discretisation, forces, next(shares)),
+        lambda forces: _run_once(case, line, discretisation, forces, next(shares), frames),
         lambda passage_run: _mean_forces(case, passage_run.record),
         start,
         targets,
@@ -130,12 +134,14 @@ def _run_once(
     discretisation: Discretisation,
     uplift_forces: tuple[float, ...],
     progress: ShareCallback,
+    frames: FrameRequest | None,
 ) -> PassageRun:
-    passage = build_passage(case, line, discretisation, uplift_forces)
+    passage = replace(build_passage(case, line, discretisation, uplift_forces), frames=frames)
     begin = time.perf_counter()
     history, fmus, outputs = _integrate(case, line, passage, uplift_forces, progress)
     record = record_passage(case, passage, history)
-    return PassageRun(record, build_run_table(discretisation, passage.duration, begin), uplift_forces, fmus, outputs)
+    table = build_run_table(discretisation, passage.duration, begin)
+    return PassageRun(record, table, uplift_forces, fmus, outputs, history.frames)
 
 
 def _integrate(

@@ -1,4 +1,4 @@
-"""Moving pictures of a simulated line, coded within a bound of their size; that of a passage is simulated once more."""
+"""Moving pictures of a simulated line, coded within a bound of their size."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -95,7 +95,7 @@ def film_passage(
     uplift_forces: tuple[float, ...],
     progress: ShareCallback = ignore_progress,
 ) -> PassageMotion | None:
-    """Moving picture of a passage while the train is on the drawn line.
+    """Moving picture of a passage while the train is on the drawn line, for which it is simulated once more.
 
     Args:
         case: Case with a speed.
@@ -109,15 +109,33 @@ def film_passage(
     Returns:
         Picture; None if another program moves a pantograph, or if no form is small enough.
     """
+    stretch = plan_film(case, line, shape, discretisation)
+    if stretch is None:
+        return None
     passage = build_passage(case, line, discretisation, uplift_forces)
-    steps = _choose_steps(case, passage.time_step, round(passage.duration / passage.time_step))
-    stretch = choose_stretch(line, shape, steps)
-    if case.fmus or not stretch.request.steps:
-        return None
     frames = integrate_passage(line, replace(passage, frames=stretch.request, watched=()), progress).frames
-    if frames is None:
-        return None
-    signals, at = RecordSignals(record, case.file.filter).pantographs, np.array(steps) - 1
+    return None if frames is None else code_film(case, line, stretch, frames, record, progress)
+
+
+def plan_film(
+    case: Case, line: DiscretisedLine, shape: LineShape, discretisation: Discretisation
+) -> FilmedStretch | None:
+    """Stretch and instants of the picture of a passage; None if another program moves a pantograph, or without any."""
+    time_step = discretisation.time_step_s
+    steps = _choose_steps(case, time_step, round((case.end - case.start) / case.speed / time_step))
+    return None if case.fmus or not steps else choose_stretch(line, shape, steps)
+
+
+def code_film(
+    case: Case,
+    line: DiscretisedLine,
+    stretch: FilmedStretch,
+    frames: Frames,
+    record: Record,
+    progress: ShareCallback = ignore_progress,
+) -> PassageMotion | None:
+    """Code the frames of a passage beside its record; None: no form is small enough."""
+    signals, at = RecordSignals(record, case.file.filter).pantographs, np.array(stretch.request.steps) - 1
 
     def code(form: CodedForm) -> PassageMotion:
         progress(1.0)

@@ -19,7 +19,7 @@ from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs.case_run import run_passage, run_start
 from pantocheck.conformance.runs.core_requirement import COMPILATION, announce_compilation, require_core
-from pantocheck.conformance.runs.passage_film import film_passage
+from pantocheck.conformance.runs.passage_film import code_film, plan_film
 from pantocheck.conformance.runs.resolution import (
     list_mesh_frequencies,
     list_model_uncertainty,
@@ -31,6 +31,7 @@ from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model import Catenary, discretise
 from pantocheck.model.description.failures import SimulationError
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.passage import FrameRequest, Frames
 
 _LOGGER = logging.getLogger(__name__)
 
@@ -91,11 +92,15 @@ class ReferenceSimulator:
     def _run_drawn(self, case: Case, steps: StepSequence) -> tuple[Delivered, tuple[float, ...] | None]:
         """Run a case once; result with shape and motion of the line, and uplift forces of its passage [N]."""
         discretisation = case.file.discretisation
-        delivered, uplift_forces = _deliver(case, discretisation, None, _begin_run(case, steps), self.start_forces)
         line = discretise_line(case.line, discretisation.element_m)
-        shape, motion = build_line_shape(case.line, case.analysed_spans, line), None
-        if delivered.record is not None and uplift_forces is not None:
-            motion = film_passage(case, line, shape, discretisation, delivered.record, uplift_forces)
+        shape = build_line_shape(case.line, case.analysed_spans, line)
+        stretch = None if case.is_static else plan_film(case, line, shape, discretisation)
+        request = None if stretch is None else stretch.request
+        progress = _begin_run(case, steps)
+        delivered, uplift_forces, frames = _deliver(case, discretisation, None, progress, self.start_forces, request)
+        motion = None
+        if stretch is not None and frames is not None and delivered.record is not None:
+            motion = code_film(case, line, stretch, frames, delivered.record)
         return replace(delivered, line_shape=shape, motion=motion), uplift_forces
 
     def run_unrefined(self, case: Case, follow: ShareCallback = ignore_progress) -> Delivered:
@@ -241,16 +246,19 @@ def _deliver(
     uplift_forces: tuple[float, ...] | None = None,
     progress: ShareCallback = ignore_progress,
     start_forces: tuple[float, ...] = (),
-) -> tuple[Delivered, tuple[float, ...] | None]:
-    """Simulate a case; result, and uplift forces of its passage [N]."""
+    request: FrameRequest | None = None,
+) -> tuple[Delivered, tuple[float, ...] | None, Frames | None]:
+    """Simulate a case; result, uplift forces of its passage [N], and requested frames."""
     line = discretise_line(case.line, discretisation.element_m)
     static = compute_static_quantities(case, line)
     if case.is_static:
         static |= compute_quantities_along_line(case.line, line)
-        return Delivered(
-            static=static, run=RunTable(dt_s=discretisation.time_step_s, element_m=discretisation.element_m)
-        ), None
-    passage = run_passage(case, line, discretisation, uplift_forces, progress, start_forces)
+        return (
+            Delivered(static=static, run=RunTable(dt_s=discretisation.time_step_s, element_m=discretisation.element_m)),
+            None,
+            None,
+        )
+    passage = run_passage(case, line, discretisation, uplift_forces, progress, start_forces, request)
     delivered = Delivered(
         passage.record,
         static,
@@ -263,4 +271,4 @@ def _deliver(
         fmus=passage.fmus,
         fmu_outputs=passage.outputs,
     )
-    return delivered, passage.uplift_forces
+    return delivered, passage.uplift_forces, passage.frames

@@ -29,6 +29,19 @@ def film(case: Case) -> tuple[Record, LineShape, PassageMotion]:
     return record, shape, motion
 
 
+def test_graded_passage_with_frames_is_the_same_passage_and_gives_the_same_picture(case_250: Case) -> None:
+    """Bit by bit: the steps stop at the frames, and go on from the same state."""
+    record, shape, motion = film(case_250)
+    discretisation = case_250.file.discretisation
+    line = discretise_line(case_250.line, discretisation.element_m)
+    stretch = passage_film.plan_film(case_250, line, shape, discretisation)
+    assert stretch is not None
+    run = run_passage(case_250, line, discretisation, FORCES, frames=stretch.request)
+    assert run.frames is not None
+    assert_array_equal(run.record.force, record.force)
+    assert passage_film.code_film(case_250, line, stretch, run.frames, run.record) == motion
+
+
 def test_picture_agrees_with_the_record(case_250: Case) -> None:
     """Rises within the stated error, head within its rounding of 0.05 mm, and the band by its RMS (2 % for 250 Hz)."""
     record, shape, motion = film(case_250)

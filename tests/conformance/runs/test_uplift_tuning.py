@@ -101,7 +101,7 @@ def untunable(edited_case: EditedCase, wave: type[Wave], monkeypatch: pytest.Mon
     """A case with a target that no run meets: every run has a mean contact force of 119 N."""
     changes = {"pantograph.0.uplift_force_N": None, "pantograph.0.target_mean_force_N": 150.0}
 
-    def run_once(case: Case, line: object, steps: object, uplift_forces: tuple[float, ...], _: object) -> PassageRun:
+    def run_once(case: Case, line: object, steps: object, uplift_forces: tuple[float, ...], *_: object) -> PassageRun:
         return PassageRun(wave().record(case), RunTable(), uplift_forces)
 
     monkeypatch.setattr(case_run, "_run_once", run_once)
