@@ -26,7 +26,7 @@ from pantocheck.conformance.core.panel_marks import (
 )
 from pantocheck.conformance.core.panel_scale import MOST_INTERVALS, AxisScale
 
-FRAME, GRID = "#5a636d", "#e3e7eb"
+FRAME, GRID, PAPER = read_look()["figure"]["frame"], read_look()["figure"]["grid"], read_look()["light"]["paper"]
 FRAME_WIDTH, GRID_WIDTH, TICK_WIDTH = 0.7, 0.6, 0.8
 TICK, PAD, LABEL_PAD = 3.5, 3.5, 4.0
 """Length of a tick, its distance from its label, and the distance of this from the name of the axis [pt]."""
@@ -218,7 +218,7 @@ class Panel:
         name = f"panel-{number}"
         parts = [f'<defs><clipPath id="{name}"><rect {frame}/></clipPath></defs>']
         if self.has_axes:
-            parts.append(f'<rect {frame} fill="#ffffff"/>')
+            parts.append(f'<rect {frame} fill="{PAPER}"/>')
         ordered = sorted(self.marks, key=lambda pair: pair[0])
         grid = self._write_grid() if self.has_axes else ""
         parts += [self._write_mark(mark, name) for level, mark in ordered if level < 0.5]
@@ -352,7 +352,7 @@ class PanelFigure:
         size = f"{72 * self.width:.6g}", f"{72 * self.height:.6g}"
         panels = "".join(panel.write(number) for number, panel in enumerate(self.axes, 1))
         root = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size[0]} {size[1]}" width="{size[0]}pt"'
-        ground = f'<rect width="{size[0]}" height="{size[1]}" fill="#ffffff"/>'
+        ground = f'<rect width="{size[0]}" height="{size[1]}" fill="{PAPER}"/>'
         return f'{root} height="{size[1]}pt" version="1.1">{ground}{panels}</svg>\n'
 
     def list_data(self) -> list[DrawnData]:

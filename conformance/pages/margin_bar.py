@@ -16,7 +16,8 @@ from pantocheck.conformance.core.look import read_look
 WIDTH, HEIGHT = 100.0, 18.0
 MIDDLE = HEIGHT / 2
 _LOOK = read_look()
-INK, GREY, LIMIT_FILL = _LOOK["light"]["ink"], _LOOK["figure"]["grey"], _LOOK["figure"]["limit"]
+INK, PAPER = _LOOK["light"]["ink"], _LOOK["light"]["paper"]
+GREY, LIMIT_FILL = _LOOK["figure"]["grey"], _LOOK["figure"]["limit"]
 # Distance of a limit from the middle, as a share of half the width.
 BAR_REACH = 0.56
 # A value closer to an edge is drawn as an arrow.
@@ -98,5 +99,5 @@ def _marker(x: float, verdict: str) -> str:
     if verdict == "fail":
         cross = f"M{x - 4.5:.2f} {MIDDLE - 4.5:g}l9 9m0 -9l-9 9"
         return f'<path d="{cross}" stroke="{ink}" stroke-width="2.6" fill="none"/>'
-    fill, edge = (ink, "#ffffff") if verdict == "pass" else ("#ffffff", ink)
+    fill, edge = (ink, PAPER) if verdict == "pass" else (PAPER, ink)
     return f'<circle cx="{x:.2f}" cy="{MIDDLE:g}" r="4.5" fill="{fill}" stroke="{edge}" stroke-width="1.4"/>'

@@ -1,12 +1,12 @@
 """Moving picture of a passage: the static figure that stands for it on paper and without scripts."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from pantocheck.conformance.core.figure_data import LineShape
-from pantocheck.conformance.core.figure_style import FULL, GREY, INK, PALE, SHADES
+from pantocheck.conformance.core.figure_style import CURVES, FULL, GREY, INK, PALE, SHADES
 from pantocheck.conformance.core.panel_figure import PanelFigure, write_svg
 from pantocheck.conformance.core.panel_marks import LineStyle
 from pantocheck.conformance.pages import document as doc
@@ -58,8 +58,17 @@ def _find_smallest(motion: PassageMotion, section: tuple[float, float]) -> tuple
 
 
 @write_svg
-def draw_instant(motion: PassageMotion, shape: LineShape, section: tuple[float, float], frame: int) -> PanelFigure:
-    """Wires in one frame over their shape at rest, and the places of the pantographs."""
+def draw_instant(
+    motion: PassageMotion,
+    shape: LineShape,
+    section: tuple[float, float],
+    frame: int,
+    others: Sequence[PassageMotion] = (),
+) -> PanelFigure:
+    """Wires in one frame over their shape at rest, the places of the pantographs, and dashed wires of other passages.
+
+    The first pantograph of another passage is where that of the first one is.
+    """
     figure, [[axes]] = lay_panels(PanelGrid(FULL, 1.1, right=0.2))
     axes.axvspan(*section, PALE)
     droppers = shape.side.droppers
@@ -70,6 +79,12 @@ def draw_instant(motion: PassageMotion, shape: LineShape, section: tuple[float, 
         axes.plot(curve.x_m, curve.y_m, LineStyle(SHADES[2], 0.6))
         height = np.interp(x, curve.x_m, curve.y_m) + ENLARGED * rise
         axes.plot(x, height, LineStyle(INK, WIRE_WIDTHS[curve.kind]))
+    for other, colour in zip(others, CURVES[1:], strict=False):
+        for wire in other.wires:
+            curve, x, field = shape.side.curves[wire.curve], np.array(wire.x_m), wire.rise_mm.decode()
+            rise = field[_align_frame(motion, frame, other)] / 1000
+            height = np.interp(x, curve.x_m, curve.y_m) + ENLARGED * rise
+            axes.plot(x, height, LineStyle(colour, WIRE_WIDTHS[curve.kind], "--"))
     low = axes.y_scale.find_limits()[0]
     for owner, part in enumerate(motion.pantographs, 1):
         place = part.start_m + motion.speed_m_s * motion.step_s * frame
@@ -79,3 +94,10 @@ def draw_instant(motion: PassageMotion, shape: LineShape, section: tuple[float, 
     axes.x_scale.limits = (shape.supports_m[0], shape.supports_m[-1])
     axes.name_axes("position along the line [m]", "height [m]")
     return figure
+
+
+def _align_frame(motion: PassageMotion, frame: int, other: PassageMotion) -> int:
+    """Frame of another passage in which its first pantograph is where that of the first passage is."""
+    place = motion.pantographs[0].start_m + motion.speed_m_s * motion.step_s * frame
+    frame = round((place - other.pantographs[0].start_m) / (other.speed_m_s * other.step_s))
+    return min(max(frame, 0), other.wires[0].rise_mm.frames - 1)

@@ -253,5 +253,6 @@ def render_badge(results: Results) -> str:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{total}" height="20" role="img" aria-label="{name}">'
         f"<title>{name}</title>"
-        f'<g fill="#fff" font-family="Verdana,DejaVu Sans,sans-serif" font-size="11">{"".join(parts)}</g></svg>\n'
+        f'<g fill="{read_look()["light"]["paper"]}" font-family="Verdana,DejaVu Sans,sans-serif" font-size="11">'
+        f"{''.join(parts)}</g></svg>\n"
     )

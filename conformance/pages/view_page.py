@@ -44,12 +44,12 @@ def draw_scene(scene: LineScene, number: int) -> doc.Figure:
     if scene.together:
         frame = motion.wires[0].rise_mm.frames // 2
         others = ", ".join(scene.names[1:])
-        caption = (
-            f"Passage of {name} at {motion.start_s + frame * motion.step_s:.3f} s; over it moves {others}. {enlarged}"
-        )
+        time = f"{motion.start_s + frame * motion.step_s:.3f} s"
+        caption = f"Passage of {name} at {time}, and at the same place, dashed, {others}. {enlarged}"
     else:
         frame = max(0, math.floor(-motion.start_s / motion.step_s))
         caption = f"{name}: the line under the mass, at the release. {enlarged}"
-    svg = draw_instant(motion, shape, (shape.supports_m[0], shape.supports_m[0]), frame)
+    shown = scene.motions[1:] if scene.together else ()
+    svg = draw_instant(motion, shape, (shape.supports_m[0], shape.supports_m[0]), frame, shown)
     curves = doc.Curves("passage", number)
     return doc.Figure(svg, caption, caption, anchor=f"scene-{number + 1}", curves=curves)

@@ -2,6 +2,8 @@
 
 import re
 from itertools import combinations
+from pathlib import Path
+from typing import Any
 
 import matplotlib.colors
 import numpy as np
@@ -97,6 +99,18 @@ def test_figures_have_the_colours_of_the_look() -> None:
     assert [matplotlib.colors.to_hex(colour) for colour in style["axes.prop_cycle"].by_key()["color"]] == list(CURVES)
 
 
-@pytest.mark.parametrize("name", ["page.css", "page.typ", "elements.typ", "signature-box.typ", "verifier/verifier.css"])
-def test_templates_state_no_colour(name: str) -> None:
-    assert re.findall(r"#[0-9a-f]{3,8}\b", (TEMPLATES / name).read_text("utf-8")) == []
+def test_no_other_file_states_a_colour() -> None:
+    """Style sheets, Typst, scripts and modules take them from the look; libraries have their own."""
+    templates = [path for path in list_files(TEMPLATES) if path.suffix in (".css", ".typ", ".js")]
+    modules = [path for path in list_files(Path(__file__).parents[3] / "conformance") if path.suffix == ".py"]
+    stated = {
+        path.name: found
+        for path in (*templates, *modules)
+        if not {"uplot", "pkijs"} & set(path.parts)
+        and (found := re.findall(r"(?<![&\w])#(?:[0-9a-f]{6}|[0-9a-f]{3})\b(?!-)", path.read_text("utf-8")))
+    }
+    assert stated == {}
+
+
+def list_files(folder: Any) -> list[Path]:
+    return sorted(Path(str(folder)).rglob("*"))
