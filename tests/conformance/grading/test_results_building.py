@@ -10,10 +10,11 @@ import pytest
 from helpers.command_line import pantocheck
 from helpers.section_lines import section_tables
 from pantocheck.conformance.cases.library import load_case, select_cases
+from pantocheck.conformance.core.sourced_table import SourcedTable
 from pantocheck.conformance.documents.library_check import check_library
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.grading.contact_loss_list import find_force_places, find_uplift_place
-from pantocheck.conformance.grading.derived_facts import list_derived_facts
+from pantocheck.conformance.grading.derived_facts import list_derived_facts, list_input_values
 from pantocheck.conformance.grading.results_building import build_results, key_by_owner, select_finite, utc_now
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pages.case_section import derived_blocks
@@ -36,6 +37,39 @@ def test_numbers_that_are_not_finite_and_empty_owners_are_left_out() -> None:
 
 
 # Values of inputs in results.json.
+
+
+class Parts(SourcedTable):
+    """Table with every form of a value."""
+
+    one: float
+    flag: bool
+    few: list[float]
+    many: list[float]
+    mixed: list[bool | float | str]
+    words: list[str]
+    parts: list[dict[str, float | str]]
+
+
+def test_values_of_a_table_are_numbers_ranges_and_texts() -> None:
+    """Up to twelve numbers are a list, more a range; a truth value is no number, and twelve texts stand for more."""
+    few, words = [float(n) for n in range(12)], [f"word {n}" for n in range(13)]
+    parts = [{"height_m": 1.5, "kind": "post", "source": "drawing"}, {"height_m": 1.0, "kind": "post"}]
+    table = Parts.model_validate(
+        {"one": 3, "flag": True, "few": few, "many": [*few, -4.0], "mixed": [True, 2.5, "rigid"], "words": words}
+        | {"parts": parts, "source": "drawing", "trust": "primary"}
+    )
+    assert list_input_values(table, {"line.one"}, "wire") == {
+        "one": 3.0,
+        "flag": True,
+        "few": few,
+        "many": StoredRange(count=13, lowest=-4.0, highest=11.0),
+        "mixed": ["True", 2.5, "rigid"],
+        "words": words[:12],
+        "parts.height_m": [1.5, 1.0],
+        "parts.kind": ["post", "post"],
+    }
+    assert "one" not in list_input_values(table, {"wire.one"}, "wire")
 
 
 def test_library_case_has_the_values_of_its_files() -> None:
