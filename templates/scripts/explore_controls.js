@@ -2,8 +2,8 @@
 
 const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
 
-/** Time without a further change before the simulator starts [ms]. */
-const PAUSE_MS = 120;
+/** Time in which further changes are taken together [ms]. */
+const PAUSE_MS = 60;
 
 /** Positions of a slider whose steps multiply its value. */
 const POSITIONS = 200;
@@ -56,13 +56,15 @@ class Control {
   }
 }
 
-/** Sliders of the page; `act` is called after a change and a short pause. */
+/** Sliders of the page; `act` is called shortly after a change, and again and again while a slider moves. */
 class Controls {
   constructor(sliders, act) {
     let timer = 0;
     const changed = () => {
-      clearTimeout(timer);
-      timer = setTimeout(act, PAUSE_MS);
+      timer ||= setTimeout(() => {
+        timer = 0;
+        act();
+      }, PAUSE_MS);
     };
     this.controls = sliders.map((slider) => new Control(slider, changed));
     const reset = element("button", { type: "button" }, "Values of the case");

@@ -1,5 +1,8 @@
 // Explorer: the page itself, which follows the sliders, keeps a setting for comparison, and saves settings as files.
 
+/** Time after which a running passage is ended by a change [ms]. */
+const PATIENCE_MS = 400;
+
 /** A field with its label. */
 function field(label, input) {
   return element("label", { class: "field" }, `${label} `, input);
@@ -22,27 +25,43 @@ class Explorer {
     openPart("save").append(...(results.can_save ? this.makeForms() : ["Start the command with --out FOLDER to save settings."]));
   }
 
+  /** Follow a change: a passage that will soon be there is shown first, so that a moving slider shows some; a long one is ended. */
+  run() {
+    const age = performance.now() - this.begun;
+    if (!this.isSimulating || age >= PATIENCE_MS) return this.start();
+    this.next ??= setTimeout(() => this.start(), PATIENCE_MS - age);
+    return undefined;
+  }
+
   /** Simulate the setting of the sliders, show its values, then its moving picture. */
-  async run() {
+  async start() {
+    clearTimeout(this.next);
+    this.next = undefined;
     this.request?.abort();
     this.request = new AbortController();
     const { signal } = this.request;
+    [this.isSimulating, this.begun] = [true, performance.now()];
     this.status.textContent = `Simulating … ${results.cases.length ? "" : results.waiting}`;
     document.body.setAttribute("aria-busy", "true");
     try {
       const passage = await ask("/simulate", { values: this.controls.values }, signal);
+      this.isSimulating = false;
       this.show(passage);
+      if (this.next) return this.start();
       this.status.textContent = `Simulated in ${formatNumber(passage.computing_s, 2)} s. Drawing the moving picture …`;
       const motion = await ask("/film", { number: passage.number }, signal);
       results.cases.forEach((setting) => setting.number === passage.number && Object.assign(setting, { motion }));
       for (const [number, setting] of results.cases.entries()) if (setting.motion === motion) await this.pictures.show(number);
       this.status.textContent = `Simulated in ${formatNumber(passage.computing_s, 2)} s. ${this.countOutside()}`;
     } catch (error) {
-      if (error.name === "AbortError" || error.isReplaced) return;
+      if (error.name === "AbortError" || error.isReplaced) return undefined;
+      this.isSimulating = false;
+      if (this.next) return this.start();
       const kept = results.cases.length ? " The page shows the last setting that was simulated." : "";
       this.status.textContent = `${error.message}${kept}`;
     }
     document.body.removeAttribute("aria-busy");
+    return undefined;
   }
 
   /** Number of values outside of their limits, in words. */
