@@ -1,6 +1,7 @@
 """Record: signals of a passage, simulated or measured, on a uniform time axis in SI units."""
 
 import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Literal
 
@@ -31,6 +32,21 @@ FORCE_CHANNELS = ("force", *STRIP_CHANNELS)
 
 STRIP_TOLERANCE_N = 0.1
 """Largest difference of the contact force from the sum of its strips: rounding of three channels [N]."""
+
+
+def name_outputs(outputs: Iterable[tuple[int, Mapping[str, RealArray]]]) -> dict[str, RealArray]:
+    """Columns of a record with the outputs of FMUs, given by pantograph and name.
+
+    Signs that end a column, a line or a group of a file are replaced.
+    """
+    columns: dict[str, RealArray] = {}
+    for number, named in outputs:
+        for name, values in named.items():
+            column = f"{OUTPUT_COLUMN}{number}: " + re.sub(r"[^\w.()\[\]-]", "_", name)
+            while column in columns:
+                column += "_"
+            columns[column] = values
+    return columns
 
 
 class RecordInvalid(ValueError):

@@ -15,7 +15,7 @@ from pantocheck.conformance.cases.start_and_section import RunStart
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.step_log import ShareCallback, ignore_progress
 from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M
-from pantocheck.conformance.records.record import OUTPUT_COLUMN, Record
+from pantocheck.conformance.records.record import Record, name_outputs
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.case_facts_format import FmuRun
@@ -170,9 +170,7 @@ def _integrate(
     moved, steps = [(number, fmu) for number, fmu in enumerate(programs, 1) if fmu is not None], history.time.size
     pairs = zip(moved, history.coupling, strict=True)
     runs = tuple(describe_coupling(number, fmu, coupling, steps) for (number, fmu), coupling in pairs)
-    outputs = ((number, fmu.list_outputs(steps)) for number, fmu in moved)
-    named = {f"{OUTPUT_COLUMN}{number}: {name}": values for number, rows in outputs for name, values in rows.items()}
-    return history, runs, named
+    return history, runs, name_outputs((number, fmu.list_outputs(steps)) for number, fmu in moved)
 
 
 def build_run_table(discretisation: Discretisation, simulated_s: float, begin: float) -> RunTable:

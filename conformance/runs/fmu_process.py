@@ -145,9 +145,12 @@ class FmuPantograph:
             self._program = self._processes.enter_context(Program((sys.executable, *WORKER), folder, ALL_ANSWERS))
         except ProgramFailed as error:
             raise FmuFailed(f"{self.where} {error}") from None
-        facts = FmuFacts(**self._ask(LOAD_LIMIT, "describe", folder=str(folder), interface=self.table.interface))
         table = self.table
         names = {key: getattr(table, key) for key in (*INPUTS, *OUTPUTS) if getattr(table, key) is not None}
+        used = [*(name for found in names.values() for name in np.atleast_1d(found).tolist())]
+        used += [*table.parameters, *table.outputs]
+        answer = self._ask(LOAD_LIMIT, "describe", folder=str(folder), interface=table.interface, names=used)
+        facts = FmuFacts(**answer)
         scales = {
             (key, name): find_scale(key, (INPUTS | OUTPUTS)[key], name, facts, self.where)
             for key, name in ((key, name) for key, found in names.items() for name in np.atleast_1d(found).tolist())

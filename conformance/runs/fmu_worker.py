@@ -6,7 +6,7 @@ disk than the limits: it is isolated from the suite, not from the user.
 
 | request | answer |
 |---|---|
-| `describe`: folder, interface | facts of the model description, and its variables of floating point |
+| `describe`: folder, interface, names | facts of the model description, and of the named variables of floating point |
 | `start`: time step, variables, values | empty: the FMU is initialised |
 | `step`: values of the inputs, whether the last step is accepted | values of the outputs |
 | `restart` | empty: the state before the first step |
@@ -27,6 +27,8 @@ LONGEST_RUN_S = 3600
 """Limit of processor time [s]."""
 IDENTIFIER = re.compile(r"[A-Za-z_]\w{0,200}")
 """Model identifier: name of the shared library, without a path."""
+LARGEST_LIST = 500_000
+"""Largest size of the facts of variables in an answer; multibody models have tens of thousands of variables."""
 ATTEMPTS, TOLERANCE = 30, 1e-12
 """Iterations of a step of model exchange, and its relative accuracy."""
 
@@ -174,8 +176,8 @@ class ModelExchange(CoSimulation):
 class Session:
     """Loaded FMU."""
 
-    def describe(self, folder: str, interface: str) -> dict[str, Any]:
-        """Read the model description."""
+    def describe(self, folder: str, interface: str, names: list[str]) -> dict[str, Any]:
+        """Read the model description; of many variables, those with the names are listed, and the first others."""
         from fmpy.model_description import read_model_description
 
         self.folder = folder
@@ -189,23 +191,28 @@ class Session:
         if not IDENTIFIER.fullmatch(found.modelIdentifier or ""):
             raise RuntimeError(f"the model identifier {found.modelIdentifier!r} is no identifier")
         self.major = int(described.fmiVersion[0])
-        units = {unit.name: unit for unit in described.unitDefinitions}
         return {
             "fmi_version": described.fmiVersion,
             "model_name": described.modelName,
             "tool": described.generationTool or "",
             "model_version": described.version or "",
             "has_state": self._has_state,
-            "variables": {
-                variable.name: {
-                    "causality": str(variable.causality),
-                    "unit": self._find_unit(variable),
-                    "base": self._describe_unit(units.get(self._find_unit(variable))),
-                }
-                for variable in described.modelVariables
-                if str(variable.type) in ("Real", "Float64")
-            },
+            "variables": self._list_variables(set(names)),
         }
+
+    def _list_variables(self, names: set[str]) -> dict[str, dict[str, Any]]:
+        units = {unit.name: unit for unit in self.described.unitDefinitions}
+        real = (variable for variable in self.described.modelVariables if str(variable.type) in ("Real", "Float64"))
+        listed, size = {}, 0
+        for variable in sorted(real, key=lambda variable: variable.name not in names):
+            unit = self._find_unit(variable)
+            base = self._describe_unit(units.get(unit))
+            facts = {"causality": str(variable.causality), "unit": unit, "base": base}
+            size += len(variable.name) + len(json.dumps(facts))
+            if size > LARGEST_LIST:
+                break
+            listed[variable.name] = facts
+        return listed
 
     @property
     def _has_state(self) -> bool:

@@ -18,6 +18,7 @@ from pantocheck.conformance.cases.case_parts import read_named_pantograph
 from pantocheck.conformance.core.extras import is_installed
 from pantocheck.conformance.execution.plan import Plan, prepare_plan
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.records.record import name_outputs
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.results_format import CaseResult
@@ -27,6 +28,15 @@ from verification.fmu.fmu_builder import find_missing_tool
 EXAMPLES = Path(__file__).parents[3] / "examples"
 MESH = (2.0, 0.004)
 """Element length [m] and time step [s] of the short passages."""
+
+
+def test_names_of_outputs_stay_in_their_column() -> None:
+    """A name of a stranger must not end a column or a line, or hide another output."""
+    names = ["x[1,2]", "x[1;2]", 'a"\nb', "=1+1", "der(v)", "a/b"]
+    columns = list(name_outputs([(2, {name: np.zeros(1) for name in names})]))
+    assert columns == [
+        "fmu 2: x[1_2]", "fmu 2: x[1_2]_", "fmu 2: a__b", "fmu 2: _1_1", "fmu 2: der(v)", "fmu 2: a_b"
+    ]  # fmt: skip
 
 
 @pytest.fixture(scope="module")

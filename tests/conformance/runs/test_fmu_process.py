@@ -1,6 +1,8 @@
 """FMUs in processes of their own: whatever they do, the suite gives one reason."""
 
+import zipfile
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -90,6 +92,25 @@ def test_variables_that_do_not_fit_are_named(write_fmu: WriteFmu, change: dict[s
     table = table_of(write_fmu).model_copy(update=change)
     with pytest.raises(InputError, match=reason), open_fmu(table, VALUES, 1e-3):
         pass
+
+
+def test_a_model_with_many_variables_is_described(write_fmu: WriteFmu) -> None:
+    """The named variables are found behind 8,000 others, whose facts exceed an answer of 1 MB."""
+    table = table_of(write_fmu, outputs=["x1"], version=3)
+    path = Path(table.model)
+    with zipfile.ZipFile(path) as archive:
+        entries = {name: archive.read(name) for name in archive.namelist()}
+    shared = 'causality="local" variability="continuous" initial="calculated" unit="N"'
+    names = (f"body{n}.{'q' * 100}" for n in range(8000))
+    others = "".join(f'<Float64 name="{name}" valueReference="{2000 + n}" {shared}/>' for n, name in enumerate(names))
+    text = entries["modelDescription.xml"].decode()
+    entries["modelDescription.xml"] = text.replace("<ModelVariables>", f"<ModelVariables>{others}").encode()
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in entries.items():
+            archive.writestr(name, content)
+    with open_fmu(table.model_copy(update={"sha256": None}), VALUES, 1e-3) as fmu:
+        assert np.isfinite(fmu.attempt(np.array([100.0]))).all()
+        assert {"force1", "height1", "x1", "fault", "lift"} <= set(fmu.facts.variables)
 
 
 BASE = dict.fromkeys(("kg", "m", "s", "A", "K", "mol", "cd", "rad", "offset"), 0.0) | {"factor": 1.0}
