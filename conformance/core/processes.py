@@ -90,6 +90,11 @@ GRACE = 2.0
 """Time of a process to end its program after a signal [s]."""
 
 
+def count_processors() -> int:
+    """Number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def limit_threads() -> None:
     """Let processes that start later use one thread of linear algebra; more would slow them down more than twofold.
 

@@ -78,8 +78,10 @@ class Plan(InputTable):
     """Earlier results.json; a value that drifts from it fails."""
     drift_pct: Annotated[float, Field(gt=0, le=100)] = 1.0
     """Largest drift of a value from its baseline [%]."""
-    jobs: Annotated[int, Field(ge=1, le=256)] = 1
-    """Number of cases that run in parallel."""
+    jobs: Annotated[int, Field(ge=1, le=256)] | None = None
+    """Number of processors, for cases and for the meshes of a case; default: one case at a time, whose meshes and
+    starts use all processors, at most four.
+    """
     damping_study: bool = False
     """Run every case also with the benchmark, initial and updated damping models."""
     administration: Administration | None = None

@@ -19,6 +19,7 @@ from rich.text import Text
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_table, escape_text
 from pantocheck.conformance.cases.case_source import list_case_packages
+from pantocheck.conformance.core.processes import count_processors
 from pantocheck.conformance.core.suite_identity import find_suite_commit, suite_digest
 from pantocheck.model.dynamics.core_choice import core_name, find_core_in_c
 from pantocheck.model.kernel_cache import find_kernel_cache
@@ -69,8 +70,7 @@ def list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     yield "commit of the suite", find_suite_commit() or "not known"
     yield "Python", f"{platform.python_version()} ({platform.python_implementation()}), {sys.executable}"
     yield "system", f"{platform.system()} {platform.release()}, {platform.machine()}"
-    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    yield "processors", f"{usable} usable of {os.cpu_count()}"
+    yield "processors", f"{count_processors()} usable of {os.cpu_count()}"
     yield (
         "thread limits",
         ", ".join(f"{name}={environment[name]}" for name in _THREADS if name in environment) or "none",

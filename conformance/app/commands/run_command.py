@@ -37,7 +37,7 @@ from pantocheck.conformance.comparison.profile_grading import assess_record
 from pantocheck.conformance.core.decision import parse_decision
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.processes import interruption_exit_code
+from pantocheck.conformance.core.processes import count_processors, interruption_exit_code
 from pantocheck.conformance.core.toml_file import validate_model
 from pantocheck.conformance.execution.plan import Plan, PreparedPlan, locate_plan, locate_record, prepare_plan
 from pantocheck.conformance.execution.runner import RunInterrupted, add_reference, run_cases
@@ -66,8 +66,15 @@ SystemOption = Annotated[
 LimitsOption = Annotated[
     Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
 ]
+MOST_THREADS = 4
+"""Largest number of threads of a case by default: the halved mesh alone takes a third of its time."""
+
 JobsOption = Annotated[
-    int | None, typer.Option(help="Number of processors, for cases and for the meshes of a case.", show_default="1")
+    int | None,
+    typer.Option(
+        help="Number of processors, for cases and for the meshes of a case.",
+        show_default="one case at a time, whose meshes use all, at most 4",
+    ),
 ]
 DampingStudyOption = Annotated[
     bool, typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping.")
@@ -179,8 +186,8 @@ def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Inter
     if prepared.added and current_settings().detail != "quiet":
         parts = (f"{name} (required by {', '.join(others)})" for name, others in prepared.added.items())
         error_console().print(escape_text(f"cases added: {'; '.join(parts)}"), soft_wrap=True)
-    jobs = min(plan.jobs, len(cases))
-    system = use_threads(system, plan.jobs // jobs)
+    jobs = min(plan.jobs or 1, len(cases))
+    system = use_threads(system, min(count_processors(), MOST_THREADS) if plan.jobs is None else plan.jobs // jobs)
     work = {case.id: estimate_work(case) for case in cases}
     try:
         with report_cases(len(cases), work=work) as progress:

@@ -127,7 +127,7 @@ def test_paths_of_a_plan_are_relative_to_its_file(tmp_path: Path) -> None:
     path.write_text('system = "record:en50318-2002/known-passing-code"\n')
     plan = read_plan(path)
     assert (plan.system, plan.baseline, plan.limits) == ("record:en50318-2002/known-passing-code", None, None)
-    assert (plan.timeout_s, plan.jobs, plan.trust) == (600.0, 1, "secondary")
+    assert (plan.timeout_s, plan.jobs, plan.trust) == (600.0, None, "secondary")
 
 
 # Choice between a single run and a study: by the tables of the case and by the kind of the system.
