@@ -2,6 +2,8 @@
 
 import csv
 import io
+import zlib
+from base64 import b64encode
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Self
@@ -81,3 +83,10 @@ def render_drawn_data(data: Iterable[DrawnData]) -> str:
         cells = ([f"{value:.9g}" if np.isfinite(value) else "" for value in axis.tolist()] for axis in (part.x, part.y))
         writer.writerows((part.panel, label, x, y) for x, y in zip(*cells, strict=True))
     return text.getvalue()
+
+
+def pack_drawn_data(figure: str) -> str:
+    """Data behind a figure, compressed by zlib, as base64 text; empty without data."""
+    if not isinstance(figure, DrawnFigure) or not figure.data:
+        return ""
+    return b64encode(zlib.compress(render_drawn_data(figure.data).encode(), 9)).decode()

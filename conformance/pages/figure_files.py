@@ -21,7 +21,7 @@ def write_figures(document: Document, folder: Path) -> list[Path]:
     Raises:
         InputError: A file cannot be written.
     """
-    plain, shown = (list(_list_figures(part.blocks)) for part in (document, translate_document(document)))
+    plain, shown = (list(list_figures(part.blocks)) for part in (document, translate_document(document)))
     files = []
     for number, (figure, translated) in enumerate(zip(plain, shown, strict=True), 1):
         stem = folder / f"{number:02d}-{_name_figure(figure)}"
@@ -33,15 +33,16 @@ def write_figures(document: Document, folder: Path) -> list[Path]:
     return files
 
 
-def _list_figures(blocks: Iterable[Block]) -> Iterator[Figure]:
+def list_figures(blocks: Iterable[Block]) -> Iterator[Figure]:
+    """Figures below some blocks, in the order of the page."""
     for block in blocks:
         match block:
             case Figures(figures=figures):
                 yield from figures
             case Section(blocks=inner):
-                yield from _list_figures(inner)
+                yield from list_figures(inner)
             case Answers(sections=sections):
-                yield from _list_figures(sections)
+                yield from list_figures(sections)
 
 
 def _name_figure(figure: Figure) -> str:

@@ -11,6 +11,7 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined, pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup
 
+from pantocheck.conformance.core.drawn_data import pack_drawn_data
 from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.document import (
@@ -22,6 +23,7 @@ from pantocheck.conformance.pages.document import (
     encode_scenes,
     to_plain,
 )
+from pantocheck.conformance.pages.figure_files import list_figures
 from pantocheck.conformance.pages.page_code import (
     PageCode,
     read_explorer_code,
@@ -54,7 +56,15 @@ def render_html(document: Document) -> str:
         date="" if document.results is None else format_date(document.date),
         results_id=name,
         figure_numbers=count(1),
+        figure_points=iter(_pack_points(document)),
     )
+
+
+def _pack_points(document: Document) -> list[str]:
+    """Data behind the figures of a page without results, which has no other file of them; else empty texts."""
+    if document.results is None:
+        return [pack_drawn_data(figure.svg) for figure in list_figures(document.blocks)]
+    return [""] * sum(1 for _ in list_figures(document.blocks))
 
 
 def _choose_code(document: Document) -> tuple[str, str | None, PageCode]:
@@ -84,7 +94,8 @@ def _build_environment() -> Environment:
 @pass_context
 def _inline(context: Context, figure: Mapping[str, str]) -> Markup:
     """Markup of a figure, with a number of its own on the page."""
-    return Markup(inline_figure(figure["svg"], figure["alternative"], f"figure-{next(context['figure_numbers'])}-"))
+    prefix, points = f"figure-{next(context['figure_numbers'])}-", next(context["figure_points"])
+    return Markup(inline_figure(figure["svg"], figure["alternative"], prefix, points))
 
 
 # A figure as a part of an HTML page: its text can be searched, and no style of it reaches the page.
@@ -104,13 +115,14 @@ DEFAULTS = {"stroke-linejoin": "round", "stroke-linecap": "butt"}
 """Presentation attributes that matplotlib states in a style element."""
 
 
-def inline_figure(svg: str, alternative: str, prefix: str) -> str:
+def inline_figure(svg: str, alternative: str, prefix: str, points: str = "") -> str:
     """Markup of a figure inside a page.
 
     Args:
         svg: Figure of this project.
         alternative: Alternative text.
         prefix: Prefix of every id of the figure, not used by another figure of the page.
+        points: Packed data behind the figure; empty: none.
 
     Returns:
         An element `svg` with the role of an image, without style attributes; ids that nothing refers to are left out.
@@ -119,6 +131,8 @@ def inline_figure(svg: str, alternative: str, prefix: str) -> str:
     used = frozenset(REFERENCE.findall(drawing))
     start, end = TAG.match(drawing).span()  # type: ignore[union-attr]  # a figure begins with its tag
     attributes = {"role": "img", "aria-label": escape(alternative), **DEFAULTS}
+    if points:
+        attributes["data-points"] = points
     root = SIZE.sub("", drawing[start + len("<svg") : end])
     written = "".join(f' {name}="{value}"' for name, value in attributes.items())
 

@@ -3,13 +3,6 @@
 /** Number of a missing value. */
 const MISSING = -32768;
 
-/** Bytes of a base64 text that zlib has compressed. */
-async function inflate(text) {
-  const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
-
 /** Values of a coded field, frame by frame; NaN: missing. */
 async function decodeField({ frames, columns, step, data }) {
   const halves = await inflate(data);

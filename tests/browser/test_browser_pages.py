@@ -5,6 +5,7 @@ import lzma
 import re
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 
@@ -142,3 +143,23 @@ def test_page_holds_no_address_of_another_place(page_files: dict[str, Path]) -> 
     known = {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink", "https://github.com/leeoniya/uPlot"}
     for file in page_files.values():
         assert set(re.findall(r"https?://[^\s\"'<>)]+", file.read_text("utf-8"))) <= known
+
+
+@pytest.mark.parametrize("name", ["identification", "certificate"])
+def test_figures_are_saved_as_drawings_and_as_data(open_page: Any, name: str) -> None:
+    """The saved drawing is whole by itself; pages without results have the data of each figure."""
+    page = open_page(name, accept_downloads=True)
+    page.evaluate("for (const section of document.querySelectorAll('details')) section.open = true")
+    saved = {}
+    for label in ("Figure as SVG", "Data as CSV"):
+        links = page.get_by_role("button", name=label)
+        if links.count():
+            with page.expect_download() as download:
+                links.first.click()
+            saved[label] = Path(download.value.path()).read_text("utf-8")
+    root = ElementTree.fromstring(saved["Figure as SVG"])
+    assert root.tag == "{http://www.w3.org/2000/svg}svg"
+    assert "data-points" not in root.attrib
+    assert ("Data as CSV" in saved) == (name == "identification")
+    if name == "identification":
+        assert saved["Data as CSV"].startswith("panel,curve,x,y\n")
