@@ -39,8 +39,8 @@ SWITCHES = (
     *("--disable-component-update", "--disable-sync"),
 )
 
-WIDE, NARROW = 1280, 390
-"""Widths of a desktop and of a phone [px]."""
+WIDE = 1280
+"""Width of a desktop [px]."""
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from pypdf import PdfReader, PdfWriter, Transformation
+from pypdf import PdfWriter, Transformation
 from pypdf.annotations import FreeText
 from pypdf.generic import (
     ArrayObject,
@@ -309,8 +309,3 @@ def replace_attachment(content: bytes, attachment: bytes) -> bytes:
                 writer._objects[item.indirect_reference.idnum - 1] = stream
 
     return rewrite(change)(content, random.Random())
-
-
-def read_attachment_bytes(content: bytes) -> bytes:
-    """Attached results of a PDF."""
-    return bytes(PdfReader(io.BytesIO(content)).attachments[NAME][0])

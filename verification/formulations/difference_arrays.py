@@ -181,7 +181,6 @@ def _arrays(line: Line, strands: Strands, rest: Rest, bars: list[Bar]) -> Lines:
         bar_first=np.cumsum([0] + [bar.points.size for bar in bars]),
         bar_point=np.concatenate([bar.points for bar in bars]),
         bar_coefficient=np.concatenate([bar.coefficients for bar in bars]),
-        bar_position=np.array([bar.position for bar in bars]),
         bar_stiffness=np.array([bar.stiffness for bar in bars]),
         bar_damping=np.array([bar.damping for bar in bars]),
         bar_preload=np.array([bar.preload if bar.unilateral else NEVER_SLACK for bar in bars]),

@@ -39,11 +39,10 @@ class Lines(NamedTuple):
     bar_point: Indices
     bar_coefficient: Floats
     """Points and coefficients of bar b: bar_first[b] ... bar_first[b + 1] - 1."""
-    bar_position: Floats
     bar_stiffness: Floats
     bar_damping: Floats
     bar_preload: Floats
-    """Properties of the bars, (B,); the preload of a bar that acts in both directions is huge [m, N/m, N s/m, N]."""
+    """Properties of the bars, (B,); the preload of a bar that acts in both directions is huge [N/m, N s/m, N]."""
     relief: Indices
     """First and last point of stretches with another tension, (R, 2)."""
     relief_string: Floats
