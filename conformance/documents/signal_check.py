@@ -127,6 +127,8 @@ def _dump_levels(traces: Mapping[str, Traces]) -> NumberTree:
 
 
 def _compare(stated: NumberTree, computed: NumberTree, tolerance: float) -> tuple[str, ...]:
+    if stated == computed:  # most documents were made by the same machine, and curves have thousands of points
+        return ()
     differences = compare_numbers(stated, computed, tolerance).differences
     return shorten_details([text.replace("computed", "follows from the embedded signals") for text in differences])
 
