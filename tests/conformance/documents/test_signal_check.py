@@ -72,6 +72,10 @@ def test_transient_of_each_filter_has_decayed_at_the_section() -> None:
     assert settling_samples(Filter(bands="band-pass"), 1000.0) > 3 * settling_samples(Filter(), 1000.0)
 
 
+RUNS: dict[str, Results] = {}
+"""Runs of the fixture, which no test changes."""
+
+
 @pytest.fixture(params=["one", "two", "readings"])
 def results(request: pytest.FixtureRequest, wave: Any, case_250: Case, two_pantograph_case: Case) -> Results:
     """Runs of a case with one pantograph, one with two, and one with a further reading."""
@@ -79,8 +83,9 @@ def results(request: pytest.FixtureRequest, wave: Any, case_250: Case, two_panto
     wider = reading.model_copy(update={"id": "wider", "evaluated_m": (240.0, 400.0)})
     file = case_250.file.model_copy(update={"reading": (reading, wider)})
     cases = {"one": case_250, "two": two_pantograph_case, "readings": replace(case_250, file=file)}
-    found: Results = run_cases([cases[request.param]], wave(), "provisional")
-    return found
+    if request.param not in RUNS:
+        RUNS[request.param] = run_cases([cases[request.param]], wave(), "provisional")
+    return RUNS[request.param]
 
 
 def change_case(results: Results, change: Callable[[Tree], object]) -> CaseResult:
