@@ -8,6 +8,7 @@ import pytest
 from helpers.wave_system import Wave, cut_bare
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.quantities.uncertainty import Uncertainty
@@ -70,6 +71,16 @@ def test_start_of_a_short_run_in_follows_from_other_starts(case_250: Case) -> No
     found = uncertainty(case_250, Delivered(record(case_250), starts=starts))
     assert mean_width(found, "start", 1) == pytest.approx(0.75, rel=1e-6)
     assert found.components["start"].basis == "3 runs with other starts and ramps, after a run-in of 3 spans"
+
+
+def test_starts_inside_every_limit_are_counted_with_that_of_the_case(case_250: Case) -> None:
+    """Changes of the mean by 0.2, -0.6 and 0.4 N against limits of 0.3 N around it: the case and the first one pass."""
+    limit = Limit(quantity="mean_force_N", pantograph=1, lower=118.7, upper=119.3, trust="secondary", source="test")
+    case = replace(case_250, limits=(limit,))
+    starts = tuple(Delivered(record(case, 119.0 + change)) for change in (0.2, -0.6, 0.4))
+    found = grade_case(case, Delivered(record(case), starts=starts), "secondary").conformity
+    assert found is not None
+    assert (found.starts, found.passing_starts) == (4, 2)
 
 
 def test_long_run_in_has_a_reproducible_start_and_section(twin: Case) -> None:

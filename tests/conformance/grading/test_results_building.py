@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,11 +17,13 @@ from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.grading.contact_loss_list import find_force_places, find_uplift_place
 from pantocheck.conformance.grading.derived_facts import list_derived_facts, list_input_values
 from pantocheck.conformance.grading.results_building import build_results, key_by_owner, select_finite, utc_now
+from pantocheck.conformance.grading.source_facts import build_source_facts
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pages.case_section import derived_blocks
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
+from pantocheck.conformance.records.clock_join import Clock
 from pantocheck.conformance.results.case_facts_format import DerivedFact, StoredRange
 from pantocheck.conformance.results.results_format import Results, SystemIdentity
 from pantocheck.conformance.runs.system import Delivered
@@ -34,6 +37,15 @@ def test_numbers_that_are_not_finite_and_empty_owners_are_left_out() -> None:
     }
     assert select_finite(values) == {0: {"presag_mm": [0.0, 55.0]}, 2: {"mean_force_N": 119.0}}
     assert key_by_owner({0: {}, 1: {"mean_force_N": 119.0}, 2: {}}) == {"1": {"mean_force_N": 119.0}}
+
+
+def test_clock_that_places_a_record_is_stated_in_parts_per_million() -> None:
+    """A drift of 2e-4 is 200 ppm; equal up to rounding."""
+    clocks = (("mast.csv", "time", Clock(0.5, 0.01, 2e-4, 3e-5)), ("logger.csv", "time", Clock(0.0, 0.02)))
+    facts = build_source_facts(SimpleNamespace(place_clocks=clocks, alignments=()), None)  # type: ignore[arg-type]
+    assert [source.name for source in facts] == ["mast.csv", "logger.csv"]
+    assert (facts[0].drift_ppm, facts[0].drift_uncertainty_ppm) == pytest.approx((200.0, 30.0), rel=1e-12)
+    assert (facts[1].uncertainty_s, facts[1].drift_uncertainty_ppm) == (0.02, None)
 
 
 # Values of inputs in results.json.
