@@ -62,6 +62,7 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "capture_repr": (),
     "remove_config_comments": True,
+    "reset_modules": ("matplotlib", "site_pages.look_pictures.use_look"),
     "write_computation_times": False,
 }
 

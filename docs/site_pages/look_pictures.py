@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.core.figure_style import FULL, HALF, render_svg
+from pantocheck.conformance.core.figure_style import FULL, HALF, read_style, render_svg
 from pantocheck.conformance.core.look import read_look
 from pantocheck.conformance.core.panel_figure import PanelFigure, draw_symbol, write_svg
 
@@ -72,3 +72,10 @@ def _start_figure(width: float, height: float, columns: int) -> tuple[Any, Any]:
     for axes in panels:
         axes.set_axis_off()
     return figure, panels
+
+
+def use_look(*_: Any) -> None:
+    """Let the figures of a gallery example have the look of the reports, with the letters of the site."""
+    import matplotlib
+
+    matplotlib.rcParams.update(read_style() | {"font.size": 10, "axes.labelsize": 10, "legend.fontsize": 9})

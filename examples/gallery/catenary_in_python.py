@@ -89,7 +89,7 @@ history = simulate_passage(line, Passage((pantograph,), (50.0,), 60.0, 6.0, 1e-3
 uplift_mm = 1e3 * history.motion[:, :, 0]
 fig, (shape, waves) = plt.subplots(2, figsize=(8, 6), layout="constrained", height_ratios=(1, 2), sharex=True)
 x = line.mesh.position
-for wire, colour in (("messenger", "tab:blue"), ("contact", "0.1")):
+for wire, colour in (("messenger", "C2"), ("contact", "0.1")):
     shape.plot(x, line.state.deflection[line.mesh.row_of[wire, "z"], :, 0], color=colour, label=f"{wire} wire")
 for dropper, length in zip(droppers, line.state.dropper_length, strict=True):
     foot = rest_height(line, np.array([dropper.position]))[0]

@@ -24,7 +24,7 @@ start_m, end_m = line.span_limits[24:26]
 x_m = np.linspace(0, end_m - start_m, 111)
 string_mm_N = 1e3 * x_m * (x_m[-1] - x_m) / (x_m[-1] * (22e3 + 16e3))
 fig, ax = plt.subplots(figsize=(8, 3.6), layout="constrained")
-for force_N, colour, style in ((1.0, "0.25", "-"), (150.0, "tab:blue", "--"), (300.0, "tab:orange", "-.")):
+for force_N, colour, style in ((1.0, "0.25", "-"), (150.0, "C2", "--"), (300.0, "C1", "-.")):
     elasticity = line.elasticity(start_m + x_m, force_N)
     ax.plot(x_m, elasticity, style, color=colour, label=f"force of {force_N:g} N")
 ax.plot(x_m, string_mm_N, ":", color="0.5", label="one string with both tensions")
@@ -46,8 +46,8 @@ uplift_mm = np.array([run.quantity("max_uplift_at_support_mm", 0) for run in run
 static_mm = float(reference.line.elasticity(reference.line.span_limits[9], 120.0)[0]) * 120.0
 v, c = np.linspace(0, 300, 200), 3.6 * wave_speed(20e3, 1.35)
 fig, ax = plt.subplots(figsize=(8, 3.6), layout="constrained")
-ax.plot(speeds_km_h, uplift_mm, "o", color="tab:orange", label="simulated")
-ax.plot(v, static_mm / (1 - (v / c) ** 2), "--", color="tab:blue", label="static uplift, moving on a string")
+ax.plot(speeds_km_h, uplift_mm, "o", color="C1", label="simulated")
+ax.plot(v, static_mm / (1 - (v / c) ** 2), "--", color="C2", label="static uplift, moving on a string")
 ax.axhline(static_mm, color="0.5", linestyle=":", label="static uplift under 120 N")
 ax.set(xlabel="speed [km/h]", ylabel="largest uplift at a support [mm]", xlim=(0, 310), ylim=(0, 80))
 ax.legend(loc="upper left")

@@ -38,9 +38,7 @@ signals = {name: case.simulate().signals() for name, case in cases.items()}
 fig, (line, force) = plt.subplots(2, figsize=(8, 6), layout="constrained", height_ratios=(2, 3), sharex=True)
 cases["overlap of 3 spans"].line.plot(9, 15, axes=line)
 line.set(title="Wires at rest, overlap of 3 spans", xlabel="")
-for (name, run), colour, style in zip(
-    signals.items(), ("0.6", "tab:orange", "tab:blue"), ("-", "-", "--"), strict=True
-):
+for (name, run), colour, style in zip(signals.items(), ("0.6", "C1", "C2"), ("-", "-", "--"), strict=True):
     force.plot(run["position_m"], run["force_20_N"], style, color=colour, label=name)
 force.set(xlabel="position along the track [m]", ylabel="contact force, 0-20 Hz [N]", xlim=(8 * SPAN, 15 * SPAN))
 force.legend(ncols=3, loc="upper left")

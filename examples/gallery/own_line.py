@@ -65,7 +65,7 @@ ax.set(title="Wires at rest, heights enlarged")
 
 fig, ax = plt.subplots(figsize=(8, 3.4), layout="constrained")
 deviation_N = {}
-for tension_kN, colour in ((20, "tab:orange"), (26, "tab:blue")):
+for tension_kN, colour in ((20, "C1"), (26, "C2")):
     run = case.with_({"line.contact_wire.tension_N": 1e3 * tension_kN}).simulate()
     signals = run.signals()
     deviation_N[tension_kN] = run.quantity("std_force_N")

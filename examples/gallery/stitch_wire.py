@@ -32,7 +32,7 @@ level = simple.with_(
     compared_spans=[11, 20],
 )
 cases = {"without stitch wire": level, "with stitch wire": level.with_({"line.stitch_wire": stitch})}
-COLOURS, STYLES = ("0.25", "tab:orange"), ("-", "--")
+COLOURS, STYLES = ("0.25", "C1"), ("-", "--")
 
 # %%
 # The elasticity :math:`e` is the uplift under a static force, divided by this force. A measure of a line is its

@@ -39,11 +39,11 @@ print(f"first mode of a span: {frequency_Hz:.2f} Hz; from a bad to a good spacin
 
 worst, best = int(np.argmax(deviation_N[:, 1])), int(np.argmin(deviation_N[2:, 1])) + 2
 fig, (above, below) = plt.subplots(2, figsize=(7.5, 6), layout="constrained", height_ratios=(2, 3))
-above.plot(spacings_m, deviation_N[:, 0], "o-", color="tab:blue", label="leading pantograph")
-above.plot(spacings_m, deviation_N[:, 1], "s--", color="tab:orange", label="rear pantograph")
+above.plot(spacings_m, deviation_N[:, 0], "o-", color="C2", label="leading pantograph")
+above.plot(spacings_m, deviation_N[:, 1], "s--", color="C1", label="rear pantograph")
 above.set(xlabel="spacing of the pantographs [m]", ylabel="standard deviation [N]", ylim=0)
 above.legend()
-for place, colour in ((worst, "tab:orange"), (best, "0.2")):
+for place, colour in ((worst, "C1"), (best, "0.2")):
     signals = runs[place].signals(2)
     label = f"rear pantograph, spacing {spacings_m[place]} m"
     below.plot(signals["position_m"], signals["force_20_N"], color=colour, label=label)
