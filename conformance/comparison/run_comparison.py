@@ -32,7 +32,7 @@ from pantocheck.conformance.results.comparison_format import (
     ForceAgreement,
     RunComparison,
 )
-from pantocheck.conformance.results.motion_format import LineScene
+from pantocheck.conformance.results.motion_format import LineScene, PassageMotion
 from pantocheck.conformance.results.supported_frequency import find_supported_Hz
 
 # Charts of a comparison of runs: forces, spectra, coherence and differences along the spans.
@@ -206,12 +206,13 @@ def add_scenes(comparison: RunComparison, subjects: Sequence[Sequence[ComparedRu
     scenes = []
     for case in comparison.cases:
         runs = [_select_run(runs, case.id) for runs in subjects]
-        shape = next((run.shape for run in runs if run.motion and run.shape), None)
+        shape = next((run.shape for run in runs if _find_passage(run) and run.shape), None)
         if shape is None:
             continue
-        named = zip(names, runs, strict=True)
         moving = {
-            name: run.motion for name, run in named if run.motion and _list_wires(run.shape) == _list_wires(shape)
+            name: motion
+            for name, run in zip(names, runs, strict=True)
+            if (motion := _find_passage(run)) and _list_wires(run.shape) == _list_wires(shape)
         }
         if len(moving) > 1:
             scenes.append(
@@ -227,6 +228,12 @@ def add_scenes(comparison: RunComparison, subjects: Sequence[Sequence[ComparedRu
                 )
             )
     return comparison.model_copy(update={"scenes": tuple(scenes)})
+
+
+def _find_passage(run: ComparedRun) -> PassageMotion | None:
+    """Moving picture of a run with pantographs; None without one."""
+    motion = run.motion
+    return motion if motion is not None and motion.pantographs and motion.speed_m_s > 0 else None
 
 
 def _list_wires(shape: LineShape | None) -> list[str]:

@@ -1,5 +1,6 @@
 """Compared runs: every quantity that a run has, its largest difference, and the joint uncertainty."""
 
+from dataclasses import replace
 from typing import Any
 
 from helpers.example_passage import with_passage
@@ -40,3 +41,7 @@ def test_passages_of_lines_with_other_wires_are_not_laid_over_each_other() -> No
     assert scene.names == ["first", "second"]
     assert scene.together
     assert add_scenes(compare_subjects(subjects[1:], None), subjects[1:]).scenes == ()
+    assert case.motion is not None
+    still = replace(subjects[1][0], motion=case.motion.model_copy(update={"speed_m_s": 0.0}))
+    pair = [subjects[0], [still]]
+    assert add_scenes(compare_subjects(pair, None), pair).scenes == ()
