@@ -16,6 +16,7 @@ from pantocheck.conformance.app.self_test.adapter_check import build_short_case,
 from pantocheck.conformance.core.extras import is_installed
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.runs import line_fmu
 from pantocheck.conformance.runs.line_fmu import FmiVersion, GivenInput, build_line_fmu, name_platform
 from pantocheck.conformance.runs.reference_simulator import UnrefinedSimulator
 from verification.fmu.coupling_table import compare_quantities
@@ -34,12 +35,14 @@ def export_line(tmp_path_factory: pytest.TempPathFactory) -> ExportLine:
     """Function that exports the line of a short case, once per kind."""
     if (reason := find_missing_tool()) is not None:
         pytest.skip(reason)
-    folder = tmp_path_factory.mktemp("lines")
+    folder, library = tmp_path_factory.mktemp("lines"), functools.cache(line_fmu.compile_library)
 
     def export(number: int = 1, fmi: FmiVersion = "3.0", given: GivenInput = "height") -> Path:
         path = folder / f"{number}-{fmi}-{given}.fmu"
         if not path.exists():
-            path.write_bytes(build_line_fmu(CASES[number], fmi, given))
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(line_fmu, "compile_library", library)  # the same one for all lines
+                path.write_bytes(build_line_fmu(CASES[number], fmi, given))
         return path
 
     return export
