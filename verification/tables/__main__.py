@@ -113,6 +113,8 @@ PROGRAMS = {
     "line-coverage": Program("tables.line_coverage", ("line-coverage",), "{docs}/line-fits.csv"),
     "line-hold-out": Program("tables.line_hold_out", ("line-hold-out",), "{docs}/line-hold-out.csv"),
     "network-detection": Program("tables.network_detection", ("network-detection",), "--seeds 21 22 --segments 14"),
+    "fmu-coupling": Program("fmu.coupling_table", ("fmu-coupling",)),
+    "fmu-line": Program("fmu.line_coupling", ("fmu-line", "fmu-importers")),
     "rig-accuracy": Program("rig.rig_accuracy", ("rig-accuracy",)),
     "rig-times": Program("rig.rig_hour", ("rig-times",)),
     "speed": Program("speed.speed", ("speed-plane", "speed-length", "speed-refactorised", "speed-engine")),
