@@ -4,7 +4,8 @@ These functions allocate no memory, so that numba need not count references to t
 the time of a step: a line has a hundred arrays, and every function that receives them counts each one up and down.
 Without counting, numba refuses to compile a function that allocates an array.
 
-Numba is loaded by the first call, or by the compilation of a caller. A simulation with the core in C never loads it.
+Numba is loaded by the first call of an entry, which compiles it and all that it calls; other functions that Python
+calls run as Python. A simulation with the core in C never loads it.
 """
 
 from collections.abc import Callable
