@@ -92,7 +92,7 @@ def read_results_code(language: str = LANGUAGES[0]) -> PageCode:
 def read_explorer_code() -> PageCode:
     """Styles and scripts of an explorer, in English."""
     code = read_results_code()
-    script = join_scripts(name_scripts(("elements", *EXPLORE_SCRIPTS)))
+    script = join_scripts(name_scripts(("elements", "figure_files", *EXPLORE_SCRIPTS)))
     return PageCode((*code.styles, _read(EXPLORER_STYLE)), (code.scripts[0], script), code.notice, asks_server=True)
 
 

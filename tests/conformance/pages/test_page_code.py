@@ -83,3 +83,17 @@ def test_plan_of_accepted_modes_is_a_plan(tmp_path: Path) -> None:
         (0.873, 0.00201, "keep"),
         (1.6, 0.002, "drop"),
     ]
+
+
+def test_scripts_of_a_page_define_the_functions_that_they_call() -> None:
+    """A function that moves to another part is missing where only its callers are.
+
+    A page with scenes alone has no curves, whose views it names.
+    """
+    defined = re.compile(r"^(?:async )?(?:function|class) (\w+)", re.M)
+    texts = [path.read_text("utf-8") for path in (TEMPLATES / "scripts").iterdir()]
+    names = {name for text in texts for name in defined.findall(text)}
+    for code in (read_plain_code(), read_results_code(), read_explorer_code()):
+        own = code.scripts[-1]
+        called = {name for name in names if re.search(rf"(?<![.\w]){name}\(", own)}
+        assert called <= set(defined.findall(own))
