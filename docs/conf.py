@@ -24,7 +24,7 @@ version = release = installed_version("pantocheck")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "generated/tables", "site_pages"]
+exclude_patterns = ["_build", "generated/moving", "generated/tables", "site_pages"]
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 napoleon_numpy_docstring = False
@@ -46,6 +46,7 @@ html_theme_options = {
 }
 html_title = f"Pantocheck {version}"
 html_static_path = ["_static"]
+html_extra_path = ["generated/moving"]
 html_css_files = ["site.css"]
 html_logo = html_favicon = "_static/logo.svg"
 add_module_names = False

@@ -7,12 +7,15 @@ from site_pages.check_table import build_check_table
 from site_pages.command_pages import build_command_page
 from site_pages.contributing_page import build_contributing_page
 from site_pages.converged_pages import build_converged_page
+from site_pages.element_pictures import write_element_pictures
 from site_pages.format_pages import build_format_page
 from site_pages.guide_tables import build_guide_counts
 from site_pages.input_tables import build_condition_table, build_power_table
 from site_pages.interface_pages import build_interface_page
 from site_pages.look_pictures import write_look_pictures
+from site_pages.moving_passages import write_passages
 from site_pages.page_list import build_page_list
+from site_pages.page_pictures import write_page_pictures
 from site_pages.picture_folder import keep_pictures
 from site_pages.quantity_pages import build_quantity_page
 from site_pages.start_pictures import write_start_pictures
@@ -58,8 +61,15 @@ def write_generated_pages(folder: Path) -> None:
 
 
 def write_pictures(folder: Path) -> None:
-    """Write the pictures of start page, look and tutorials, unless nothing has changed since the last time."""
-    keep_pictures(folder / "start", "", write_start_pictures)
-    keep_pictures(folder / "look", "", write_look_pictures)
+    """Write the pictures of all pages, and the moving passages, unless nothing has changed since the last time."""
+    writers = {
+        "start": write_start_pictures,
+        "look": write_look_pictures,
+        "elements": write_element_pictures,
+        "pages": write_page_pictures,
+        "../moving": write_passages,
+    }
+    for name, write in writers.items():
+        keep_pictures(folder / name, "", write)
     for page in TUTORIALS:
         keep_pictures(folder / page.stem, page.read_text("utf-8"), partial(write_tutorial_pictures, page))

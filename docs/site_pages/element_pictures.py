@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from pantocheck.conformance.core.figure_style import CURVES, FULL, GREY, HALF, INK, draw_symbol, render_svg
+from pantocheck.conformance.core.figure_style import CURVES, FULL, GREY, HALF, INK, render_svg
+from pantocheck.conformance.core.look import read_look
 from site_pages.sketches import start_sketch
 
 WIRE = {"color": INK, "linewidth": 1.6}
@@ -29,6 +30,13 @@ def _start(title: str) -> tuple[Any, Any]:
     return figure, axes
 
 
+def _draw_symbol(axes: Any, name: str, x: float, below: float, half_width: float, length: float) -> None:
+    """Symbol of the look: mass, spring or damper."""
+    for line in read_look()["symbol"][name]:
+        across, along = np.transpose(line)
+        axes.plot(x + half_width * across, below + length * along, **THIN)
+
+
 def _messenger(axes: Any, sag: float = 0.5) -> Any:
     x = np.linspace(0.3, 9.7, 60)
     axes.plot(x, 3.9 - sag + sag * ((x - 5) / 4.7) ** 2, **WIRE)
@@ -50,7 +58,7 @@ def _link(axes: Any, x: float, below: float, above: float, text: str) -> None:
     """Spring and damper side by side between two heights."""
     middle, length = (below + above) / 2, 0.9
     for shift, name, letter in ((-0.35, "spring", "k"), (0.35, "damper", "c")):
-        draw_symbol(axes, name, (x + shift, middle - length / 2), 0.16, length)
+        _draw_symbol(axes, name, x + shift, middle - length / 2, 0.16, length)
         axes.text(x + shift + (-0.3 if shift < 0 else 0.3), middle, letter, fontsize=8, ha="center", va="center")
     for height, end in ((middle - length / 2, below), (middle + length / 2, above)):
         axes.plot([x - 0.35, x + 0.35], [height, height], **THIN)
@@ -169,7 +177,7 @@ def draw_point_mass() -> Any:
     figure, axes = _start("Point mass: clamp, insulator")
     _messenger(axes)
     _contact(axes, 1.6)
-    draw_symbol(axes, "mass", (5, 1.05), 0.6, 1.1)
+    _draw_symbol(axes, "mass", 5, 1.05, 0.6, 1.1)
     axes.text(5, 2.4, "m", ha="center", fontsize=8)
     _point(axes, (5, 1.05), (5, 0.2), "m g")
     return figure

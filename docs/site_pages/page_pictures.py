@@ -9,32 +9,46 @@ from typing import Any
 import numpy as np
 
 from pantocheck.conformance.core.figure_style import CURVES, FULL, GREY, HALF, INK, PALE, add_legend, render_svg
-from site_pages.sketches import draw_commands, draw_screen, draw_sheet, draw_steps, start_sketch
+from site_pages.sketches import draw_commands, draw_screen, draw_sheet, draw_steps, list_output, start_sketch
 
-ONE, TWIN = "en50318-2002/250", "en50318-2018/ac-simple/320"
+ONE, READ = "en50318-2002/250", "en50318-2018/ac-simple/275"
 
 STEPS = {
     "extending": ("folder of yours|cases, lines,|profiles", "--cases DIR|ids own/...", "catalogue|library and yours"),
     "format-versions": ("file|schema = name/1", "same version?|yes: read", "other version:|refused,|exit code 2"),
     "platforms": ("Linux|tested", "Windows|simulated checks", "macOS|open"),
-    "systems": ("case|line, train,|discretisation", "your program|task as JSON", "record|forces, uplifts", "verdicts|limits, bands"),
-    "network": ("files|of the train", "runs import|collection", "runs assess|section by section", "report|places, trends"),
+    "systems": (
+        "case|line, train,|discretisation", "your program|task as JSON",
+        "record|forces, uplifts", "verdicts|limits, bands",
+    ),
+    "network": (
+        "files|of the train", "runs import|collection",
+        "runs assess|section by section", "report|places, trends",
+    ),
     "pytest": ("plan.toml|cases, system", "pytest|one test each", "criterion|pass, fail, skip"),
     "ci": ("commit", "simulator|records", "pantocheck run|exit code", "0: go on|1, 2, 3: stop"),
     "site": ("results.json|systems, versions", "pantocheck site|no server", "pages|who passes what"),
     "signing": ("certificate", "sign|your key", "signed document", "verify|who, and unchanged?"),
     "archival": ("results.json|attached", "PDF/A-3|fonts, tags inside", "archive|readable alone"),
     "fmu": ("FMU|pantograph", "process of its own|bounded", "line|reference simulator", "force, uplift"),
-    "rig": ("simulated line|height of the wire", "actuator", "pantograph|on the rig", "measured force|back to the line"),
+    "rig": (
+        "simulated line|height of the wire", "actuator",
+        "pantograph|on the rig", "measured force|back to the line",
+    ),
     "known-limitations": ("0-20 Hz|published limits", "20-50 Hz|converged solution", "above 50 Hz|not graded"),
 }  # fmt: skip
 """Steps of a page, each with a title and further lines."""
+
+STATES = ("format-versions", "platforms", "known-limitations")
+"""Pages whose boxes are states beside each other."""
 
 
 def write_page_pictures(folder: Path) -> None:
     """Write the picture of each page that has one of its own."""
     folder.mkdir(parents=True, exist_ok=True)
-    drawings: dict[str, Callable[[], str]] = {name: partial(draw_steps, *steps) for name, steps in STEPS.items()}
+    drawings: dict[str, Callable[[], str]] = {
+        name: partial(draw_steps, *steps, joined=name not in STATES) for name, steps in STEPS.items()
+    }
     for name, draw in (drawings | FIGURES).items():
         (folder / f"{name}.svg").write_text(draw(), "utf-8")
 
@@ -42,17 +56,8 @@ def write_page_pictures(folder: Path) -> None:
 # Screens of commands.
 def draw_doctor() -> str:
     """State of an installation, without the places on this machine."""
-    return draw_screen(["$ pantocheck doctor", *_select_lines("pantocheck doctor", 14)])
-
-
-def _select_lines(command: str, most: int) -> list[str]:
-    import subprocess
-
-    from site_pages.page_run import build_environment
-
-    done = subprocess.run(command.split(), env=build_environment(), capture_output=True, text=True, check=False)
-    lines = [line for line in done.stdout.splitlines() if line.strip() and "/" not in line.split()[-1]]
-    return lines[:most]
+    lines = list_output(Path(), "pantocheck doctor")
+    return draw_screen(["$ pantocheck doctor", *(line for line in lines if "/" not in line)][:14])
 
 
 def _draw_in_folder(*commands: str, prepare: str = "") -> str:
@@ -109,8 +114,9 @@ def draw_line_sheet() -> str:
 
     sheet = load_workbook(io.BytesIO(build_sheets("line")))["supports"]
     names = [str(cell.value) for cell in sheet[1]]
-    kept = [names.index(name) for name in ("number", "x_m", "span_m", "stagger_contact_wire_m", "encumbrance_m")]
-    rows = [[str("" if row[i] is None else row[i]) for i in kept] for row in sheet.iter_rows(max_row=6, values_only=True)]
+    kept = [names.index(name) for name in ("number", "x_m", "span_m", "encumbrance_m")]
+    cells = list(sheet.iter_rows(max_row=6, values_only=True))
+    rows = [[str("" if row[i] is None else row[i]) for i in kept] for row in cells]
     (check,) = (each for each in sheet.data_validations.dataValidation if each.promptTitle == "encumbrance_m")
     return draw_sheet(rows, f"encumbrance_m: {check.prompt}")
 
@@ -169,7 +175,7 @@ def draw_contact_laws() -> Any:
     figure, axes = _start(HALF, 2.2)
     depth = np.linspace(0, 4, 100)
     axes.plot(depth, 50 * depth, color=CURVES[0], label="spring, 50 kN/m")
-    axes.plot(depth, 200 * (depth / 1.0) ** 1.5, "--", color=CURVES[1], label="Hertz: force ~ depth^1.5")
+    axes.plot(depth, 60 * depth**1.5, "--", color=CURVES[1], label="Hertz (own scale)")
     axes.plot([0, 0], [0, 400], "-.", color=CURVES[2], linewidth=2, label="constraint")
     axes.plot([-1, 0], [0, 0], color=INK)
     axes.set(xlabel="penetration [mm]", ylabel="contact force [N]", xlim=(-1, 4), ylim=(-15, 220))
@@ -189,10 +195,10 @@ def draw_head() -> str:
 
 # Forces, values and verdicts.
 @cache
-def _grade() -> Any:
+def _grade(name: str = ONE) -> Any:
     from pantocheck.conformance import open_case
 
-    (case,) = open_case(ONE).grade().results.cases
+    (case,) = open_case(name).grade().results.cases
     return case
 
 
@@ -205,11 +211,15 @@ def draw_record() -> Any:
     figure, axes = _start(FULL, 2.0)
     begin, end = _grade().run.evaluated_m
     axes.axvspan(begin, end, color=PALE, linewidth=0)
-    axes.text((begin + end) / 2, 20, "analysis section", ha="center", fontsize=8)
     signals = run.signals()
     axes.plot(signals["position_m"], signals["force_N"], color=GREY, linewidth=0.6, label="as recorded")
     axes.plot(signals["position_m"], signals["force_20_N"], color=CURVES[0], linewidth=1.2, label="up to 20 Hz")
-    axes.set(xlabel="position along the track [m]", ylabel="contact force [N]", xlim=(begin - 60, end + 60))
+    axes.set(
+        xlabel="position along the track [m]",
+        ylabel="contact force [N]",
+        xlim=(begin - 10, end + 10),
+        title="analysis section of a record",
+    )
     add_legend(axes)
     return figure
 
@@ -228,7 +238,10 @@ def draw_python_plot() -> Any:
 def draw_verdicts() -> Any:
     """Values against limits: inside, close, undecided and outside."""
     figure, axes = start_sketch(FULL, 1.6, 10, 5)
-    rows = ((4.2, 5.0, 0.7, "pass"), (3.1, 6.7, 0.7, "pass, close"), (2.0, 7.0, 0.9, "undecided (guarded)"), (0.9, 8.2, 0.6, "fail"))
+    rows = (
+        *((4.2, 5.0, 0.7, "pass"), (3.1, 6.7, 0.7, "pass, close")),
+        *((2.0, 6.9, 0.9, "undecided (guarded)"), (0.9, 8.2, 0.6, "fail")),
+    )
     axes.axvspan(3, 7, ymin=0.1, ymax=0.94, color=PALE, linewidth=0)
     for y, x, half, text in rows:
         axes.plot([x - half, x + half], [y, y], color=INK, linewidth=1.6)
@@ -272,7 +285,7 @@ def draw_uncertainty() -> Any:
 @render_svg
 def draw_readings() -> Any:
     """Standard deviation under the documented readings."""
-    case = _grade()
+    case = _grade(READ)
     row = next(row for row in case.criteria if row.quantity == "std_force_N")
     values = [("default", row.value)]
     values += [(each.id, each.quantities["1"]["std_force_N"]) for each in case.readings if "1" in each.quantities]
@@ -287,18 +300,15 @@ def draw_readings() -> Any:
 
 @render_svg
 def draw_two_dampings() -> Any:
-    """Decay of a mass drop under two damping models."""
-    from pantocheck.conformance import open_case
-
-    case = open_case("vovan2015/mass-drop/stand-in")
+    """Free decay of one mode of 1 Hz with two damping ratios."""
     figure, axes = _start(FULL, 2.0)
-    for factor, colour, style in ((1.0, CURVES[0], "-"), (3.0, CURVES[1], "--")):
-        changed = case if factor == 1 else case.with_({"line.damping.droppers.stiffness_coefficient_s": 0.0})
-        signals = changed.simulate_drop().signals()
-        time, name = np.array(signals["time_s"]), next(name for name in signals if name != "time_s")
-        part = time < 12
-        axes.plot(time[part], np.array(signals[name])[part], style, color=colour, linewidth=0.7)
-    axes.set(xlabel="time [s]", ylabel="acceleration [m/s2]", xlim=(0, 12))
+    time = np.linspace(0, 30, 1500)
+    for ratio, colour, style in ((0.005, CURVES[0], "-"), (0.012, CURVES[1], "--")):
+        envelope = np.exp(-2 * np.pi * ratio * time)
+        axes.plot(time, envelope * np.cos(2 * np.pi * time), color=colour, linewidth=0.7)
+        axes.plot(time, envelope, style, color=colour, linewidth=1.4, label=f"damping ratio {100 * ratio:g} %")
+    axes.set(xlabel="time [s]", ylabel="motion over first amplitude", xlim=(0, 30), ylim=(-1.1, 1.1))
+    add_legend(axes)
     return figure
 
 

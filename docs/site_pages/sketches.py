@@ -25,8 +25,8 @@ def start_sketch(width: float, height: float, across: float, up: float) -> tuple
 
 
 @render_svg
-def draw_steps(*steps: str) -> Any:
-    """Steps from left to right; a step has a title and, behind a vertical bar each, further lines."""
+def draw_steps(*steps: str, joined: bool = True) -> Any:
+    """Steps from left to right, joined by arrows; a step has a title and, behind a vertical bar each, further lines."""
     figure, axes = start_sketch(FULL, 1.15, len(steps), 1)
     for number, step in enumerate(steps):
         title, *lines = step.split("|")
@@ -34,7 +34,7 @@ def draw_steps(*steps: str) -> Any:
         axes.add_patch(_rectangle(number + 0.05, 0.08, 0.8, 0.84, box))
         axes.text(number + 0.45, 0.74, title, ha="center", va="center", fontsize=8.5, weight="bold")
         axes.text(number + 0.45, 0.36, "\n".join(lines), ha="center", va="center", fontsize=7.5)
-        if number:
+        if number and joined:
             style = {"arrowstyle": "-|>", "color": INK, "linewidth": 1}
             axes.annotate("", (number + 0.05, 0.5), (number - 0.15, 0.5), arrowprops=style)
     return figure
@@ -54,7 +54,7 @@ def draw_screen(lines: Sequence[str]) -> Any:
     for number, line in enumerate(lines, 1):
         weight = "bold" if line.startswith("$ ") else "normal"
         place = (0.015, len(lines) + 0.75 - number)
-        axes.text(*place, line[:96].replace("$", r"\$"), family="DejaVu Sans Mono", fontsize=7.3, weight=weight)
+        axes.text(*place, line[:96], family="DejaVu Sans Mono", fontsize=7.3, weight=weight)
     return figure
 
 
@@ -62,20 +62,18 @@ def draw_commands(folder: Path, *commands: str, most: int = 16) -> str:
     """Screen with the output of commands that run in a folder; long output is cut."""
     lines: list[str] = []
     for command in commands:
-        done = subprocess.run(
-            ["bash", "-c", command],
-            cwd=folder,
-            env=build_environment(),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
-            check=False,
-        )
-        if done.returncode not in (0, 1, 3) or not done.stdout:
-            raise RuntimeError(f"{command} ended with exit code {done.returncode}")
-        printed = [line for line in done.stdout.splitlines() if line.strip()]
+        printed = list_output(folder, command)
         lines += [f"$ {command}", *printed[:most], *(["..."] if len(printed) > most else [])]
     return draw_screen(lines)
+
+
+def list_output(folder: Path, command: str) -> list[str]:
+    """Lines that a command prints; exit codes of verdicts are no failure."""
+    arguments = ["bash", "-c", command]
+    done = subprocess.run(arguments, cwd=folder, env=build_environment(), capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 1, 3) or not done.stdout:
+        raise RuntimeError(f"{command} ended with exit code {done.returncode}: {done.stderr}")
+    return [line for line in done.stdout.splitlines() if line.strip()]
 
 
 @render_svg
@@ -91,5 +89,5 @@ def draw_sheet(rows: Sequence[Sequence[str]], note: str) -> Any:
             axes.add_patch(_rectangle(column + 0.4, below, 1, 1, {"facecolor": fill, "edgecolor": GREY}))
             weight = "bold" if number == 0 else "normal"
             axes.text(column + 0.9, below + 0.32, text, ha="center", fontsize=7, weight=weight)
-    axes.text(0.4, 0.3, note, fontsize=7.5, style="italic")
+    axes.text(0.4, 0.3, note, fontsize=6.5, style="italic")
     return figure
