@@ -60,12 +60,12 @@ def draw_doctor() -> str:
     return draw_screen(["$ pantocheck doctor", *(line for line in lines if "/" not in line)][:14])
 
 
-def _draw_in_folder(*commands: str, prepare: str = "") -> str:
+def _draw_in_folder(*commands: str, prepare: str = "", most: int = 16) -> str:
     """Screen of commands in a new folder, after one whose output is not shown."""
     with tempfile.TemporaryDirectory() as folder:
         if prepare:
             draw_commands(Path(folder), prepare)
-        return draw_commands(Path(folder), *commands)
+        return draw_commands(Path(folder), *commands, most=most)
 
 
 # Lines.
@@ -195,10 +195,10 @@ def draw_head() -> str:
 
 # Forces, values and verdicts.
 @cache
-def _grade(name: str = ONE) -> Any:
+def _grade() -> Any:
     from pantocheck.conformance import open_case
 
-    (case,) = open_case(name).grade().results.cases
+    (case,) = open_case(ONE).grade().results.cases
     return case
 
 
@@ -283,22 +283,6 @@ def draw_uncertainty() -> Any:
 
 
 @render_svg
-def draw_readings() -> Any:
-    """Standard deviation under the documented readings."""
-    case = _grade(READ)
-    row = next(row for row in case.criteria if row.quantity == "std_force_N")
-    values = [("default", row.value)]
-    values += [(each.id, each.quantities["1"]["std_force_N"]) for each in case.readings if "1" in each.quantities]
-    figure, axes = _start(FULL, 0.6 + 0.22 * len(values))
-    axes.axvspan(row.lower, row.upper, color=PALE, linewidth=0)
-    for place, (_, value) in enumerate(reversed(values)):
-        axes.plot(value, place, "o", color=INK, markersize=5)
-    axes.set_yticks(range(len(values)), [name for name, _ in reversed(values)])
-    axes.set(xlabel="standard deviation of the force [N]; limits shaded", ylim=(-0.6, len(values) - 0.4))
-    return figure
-
-
-@render_svg
 def draw_two_dampings() -> Any:
     """Free decay of one mode of 1 Hz with two damping ratios."""
     figure, axes = _start(FULL, 2.0)
@@ -371,7 +355,7 @@ FIGURES: dict[str, Callable[[], str]] = {
     "verdicts": draw_verdicts,
     "verification": draw_verification,
     "uncertainty": draw_uncertainty,
-    "readings": draw_readings,
+    "readings": partial(_draw_in_folder, f"pantocheck readings {READ}", most=12),
     "compare-drop": draw_two_dampings,
     "glossary": draw_terms,
 }

@@ -54,7 +54,7 @@ def draw_screen(lines: Sequence[str]) -> Any:
     for number, line in enumerate(lines, 1):
         weight = "bold" if line.startswith("$ ") else "normal"
         place = (0.015, len(lines) + 0.75 - number)
-        axes.text(*place, line[:96], family="DejaVu Sans Mono", fontsize=7.3, weight=weight)
+        axes.text(*place, line[:96].replace(" ", "\u00a0"), family="DejaVu Sans Mono", fontsize=7.3, weight=weight)
     return figure
 
 
