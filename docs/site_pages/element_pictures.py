@@ -75,10 +75,10 @@ def draw_wire() -> Any:
     shape = w1 + (w2 - w1) * (3 * s**2 - 2 * s**3) + slope * s * (1 - s) ** 2
     axes.plot(2 + 6 * s, 1.2 + shape, **WIRE)
     axes.plot([1, 9], [1.2, 1.2], color=GREY, linewidth=0.7, linestyle=":")
-    for x, w, name, side in ((2, w1, "1", "right"), (8, w2, "2", "left")):
+    for x, w, name in ((2, w1, "1"), (8, w2, "2")):
         axes.annotate("", (x, 1.2 + w), (x, 1.2), arrowprops=ARROW)
         text = f"w{name}, r{name}".translate(str.maketrans("12", "₁₂"))
-        axes.text(x + (-0.2 if side == "right" else 0.2), 1.5, text, ha=side, fontsize=8, color=CURVES[1])
+        axes.text(x + 0.2, 1.5, text, fontsize=8, color=CURVES[1])
     _point(axes, (2, 1.2 + w1), (0.6, 1.2 + w1 - 0.35), "")
     _point(axes, (8, 1.2 + w2), (9.4, 1.2 + w2), "")
     axes.text(0.4, 2.1, "T", fontsize=9, color=CURVES[1])

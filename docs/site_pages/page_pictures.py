@@ -318,7 +318,7 @@ def draw_terms() -> Any:
     axes.annotate("", (start, -0.42), (middle, -0.42), arrowprops=double)
     axes.text((start + middle) / 2, -0.4, "span", ha="center", fontsize=8)
     axes.annotate("", (end - 1.5, 0), (end - 1.5, 1.2), arrowprops=double)
-    axes.text(end - 3, 0.85, "encumbrance", ha="right", fontsize=8)
+    axes.text(end - 3, 0.15, "encumbrance", ha="right", fontsize=8)
     axes.set(title="", ylim=(-0.5, 1.5), xlim=(start - 2, end + 2))
     return figure
 
