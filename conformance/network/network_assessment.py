@@ -49,6 +49,9 @@ from pantocheck.conformance.results.network_format import (
 WORST_PLACES = 100
 """Number of places whose force is kept."""
 
+SCRATCH = ".forces-"
+"""Begin of the name of a temporary folder."""
+
 MISPLACED = "the force is that of another place"
 """Reason of a passage that does not pass because its run is misplaced."""
 
@@ -115,7 +118,7 @@ def assess_tracks(
         places = tuple(place for place in task.known_places if (place.line, place.track) == (line, track))
         ends = [(min(x.facts.from_km, x.facts.to_km), max(x.facts.from_km, x.facts.to_km)) for x in here]
         own = list_tension_sections(places, line, track) or list_grid(line, track, ends, task.length_km)
-        with tempfile.TemporaryDirectory(dir=task.scratch) as scratch:
+        with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=task.scratch) as scratch:
             grade = partial(_grade_run, sections=own, places=places, task=task, scratch=Path(scratch).absolute())
             graded = list(map_runs(grade, here))
             found, misplaced = compare_passages(

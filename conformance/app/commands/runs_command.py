@@ -1,6 +1,7 @@
 """`pantocheck runs import` and `runs assess`: collections of measured runs, and their assessment by sections."""
 
 import csv
+import shutil
 import time
 from collections import Counter
 from pathlib import Path
@@ -17,6 +18,7 @@ from pantocheck.conformance.core.files import check_writable, stage_file
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.network.network_assessment import (
+    SCRATCH,
     AssessedTrack,
     AssessmentTask,
     assess_tracks,
@@ -130,6 +132,8 @@ def runs_assess_command(
     )
     check_writable(out)
     out.mkdir(parents=True, exist_ok=True)
+    for rest in out.glob(f"{SCRATCH}*"):  # of an assessment that was killed
+        shutil.rmtree(rest, ignore_errors=True)
     begin = time.monotonic()
 
     tracks: list[AssessedTrack] = []

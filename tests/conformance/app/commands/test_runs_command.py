@@ -5,8 +5,10 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from helpers.command_line import pantocheck
@@ -60,6 +62,23 @@ def test_every_file_is_written_and_a_failure_ends_with_one(runs: Path, tmp_path:
 
 def test_processes_give_the_files_of_one_process(runs: Path, tmp_path: Path) -> None:
     assert assess(runs, tmp_path / "two", "--jobs", "2") == assess(runs, tmp_path / "one")
+
+
+def test_an_assessment_killed_at_random_times_is_repeated(runs: Path, tmp_path: Path) -> None:
+    """Killed three times, and forces left in a temporary folder: the next assessment gives the same files."""
+    whole, out = assess(runs, tmp_path / "one"), tmp_path / "net"
+    arguments = ["--profile", runs.parent / "force.toml", "--section-km", "0.5", "--out", out]
+    command = [sys.executable, "-m", "pantocheck", "runs", "assess", runs, *arguments]
+    for delay in np.random.default_rng(37).uniform(0.0, 0.5, 3):
+        with subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            while process.poll() is None and not out.is_dir():
+                time.sleep(0.01)
+            time.sleep(delay)
+            process.kill()
+    (out / ".forces-killed").mkdir()
+    (out / ".forces-killed" / "0.npy").touch()
+    assert {name: text for name, text in assess(runs, out).items() if not name.startswith(".")} == whole
+    assert not list(out.glob(".forces-*"))
 
 
 @pytest.mark.thorough
