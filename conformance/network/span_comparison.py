@@ -101,11 +101,11 @@ def estimate_period(force: RealArray) -> float:
 
 
 def subtract_neighbours(force: RealArray, spans: RealArray) -> RealArray:
-    """Difference from the median of the neighbouring spans, in robust standard deviations of these; NaN where unknown.
+    """Difference from the median of the neighbouring spans; NaN where unknown.
 
     Args:
         force: Filtered force on the grid [N].
-        spans: Start and end of the spans [m].
+        spans: Start and end of the spans, (n, 2) [m].
     """
     rest = np.full(force.size, np.nan)
     lengths, grid = np.diff(spans, axis=1)[:, 0], GRID_M * np.arange(force.size)
@@ -120,6 +120,11 @@ def subtract_neighbours(force: RealArray, spans: RealArray) -> RealArray:
         others = others[np.isfinite(others).all(axis=1)]
         if len(others) >= FEWEST_NEIGHBOURS:
             rest[here] = force[here] - np.median(others, axis=0)
+    return rest
+
+
+def scale_difference(rest: RealArray, force: RealArray) -> RealArray:
+    """Difference from the neighbouring spans in robust standard deviations; parameters on the grid [N]."""
     least = LEAST_SCATTER_SHARE * abs(float(np.nanmedian(force))) if np.isfinite(force).any() else 1.0
     return rest / _find_scale(rest, least)
 

@@ -21,6 +21,7 @@ from pantocheck.conformance.network.span_comparison import (
     Deviation,
     find_deviations,
     find_spans,
+    scale_difference,
     subtract_neighbours,
 )
 from pantocheck.conformance.network.track_places import find_known_place, list_support_kilometres
@@ -104,7 +105,7 @@ def _write_profile(items: Sequence[GradedPassage], places: Sequence[KnownPlace],
         force[low - first : high - first] = np.interp(step * np.arange(low, high), km, values)
     section = items[0].passage.section
     supports = 1000 * (list_support_kilometres(places, section.line, section.track) - first * step)
-    rest = subtract_neighbours(force, find_spans(force, supports))
+    rest = scale_difference(subtract_neighbours(force, find_spans(force, supports)), force)
     speeds = [item.passage.speed_km_h for item in items if item.passage.speed_km_h is not None]
     files = path.with_suffix(".force.npy"), path.with_suffix(".rest.npy")
     for file, values in zip(files, (force, rest), strict=True):

@@ -16,7 +16,7 @@ from pantocheck.conformance.records.column_values import FileColumns
 from pantocheck.conformance.records.record import CHANNELS, ChannelRows
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import KilometreTable, MarkPosition
-from pantocheck.conformance.records.source_alignment import RecordSources, SourceSamples
+from pantocheck.conformance.records.source_alignment import GAP_STEPS, RecordSources, SourceSamples
 from pantocheck.conformance.records.source_tables import (
     SOURCE_CHANNELS,
     PassageJoin,
@@ -34,8 +34,11 @@ from pantocheck.conformance.records.track_position import (
     interpolate_marks,
 )
 
-LONGEST_GAP_S = 1.0
-"""Longest gap of a position or speed that is interpolated [s]: the averaging time of the speed."""
+LONGEST_GAPS_S = {"position": 1.0, "speed": 1.0, "force": None}
+"""Longest gap that is interpolated [s]: the averaging time of the speed; of a force, none."""
+
+SAME_RATE_SHARE = 0.01
+"""Largest difference of the rates of two forces [-]: a slower one has a smaller band, a faster one is aliased."""
 
 SECOND_TOLERANCE_S = 0.4
 """Largest difference of two pulses of the same second, by the stated offset [s]."""
@@ -82,9 +85,12 @@ def read_sources(sidecar_path: Path, sidecar: RecordSidecar, table: MeasuredTabl
             places = np.array([(sidecar.support_position_m or ())[k - 1] for k in sorted(own["uplift"])])
             values = np.vstack([own["uplift"][k] for k in sorted(own["uplift"])])
             uplift.append(SourceSamples(name, source.join.kind, time, places, values, clock))
-        for channel in ("position", "speed"):
+        if "force" in own:
+            _check_rate(time, rows["time"][1], where, name)
+        for channel, longest_s in LONGEST_GAPS_S.items():
             for k, values in own.get(channel, {}).items():
-                added.setdefault(channel, {})[k] = _resample(rows["time"][1], clock.convert(time), values)
+                gap = longest_s or GAP_STEPS * float(np.median(np.diff(time)))
+                added.setdefault(channel, {})[k] = _resample(rows["time"][1], clock.convert(time), values, gap)
                 clocks.append((name, source.join.kind, clock))
         for channel, numbered in own.items():
             taken[channel] = {**taken.get(channel, {}), **numbered}
@@ -120,15 +126,23 @@ def _find_time(own: ChannelRows, where: str, name: str) -> tuple[RealArray, Real
     return time, kept
 
 
-def _resample(time: RealArray, own: RealArray, values: RealArray) -> RealArray:
-    """Position or speed at the times of the first file; NaN outside of the source and in long gaps."""
+def _check_rate(time: RealArray, record_time: RealArray, where: str, name: str) -> None:
+    """Refuse a force with another rate than that of the first file."""
+    rates = [1 / float(np.median(np.diff(part[np.isfinite(part)]))) for part in (time, record_time)]
+    if abs(rates[0] / rates[1] - 1) > SAME_RATE_SHARE:
+        found = f"has a force with {rates[0]:.6g} samples per second, and the first file {rates[1]:.6g}"
+        raise InputError(f"{where}, {name}", found, "Export both forces with the same rate.")
+
+
+def _resample(time: RealArray, own: RealArray, values: RealArray, longest_gap: float) -> RealArray:
+    """Channel at the times of the first file; NaN outside of the source and in gaps longer than `longest_gap` [s]."""
     known = np.isfinite(values)
     if known.sum() < 2:
         return np.full(time.size, np.nan)
     found = interpolate_marks(time, own[known], values[known])
     index = np.clip(np.searchsorted(own[known], time), 1, known.sum() - 1)
     gap = own[known][index] - own[known][index - 1]
-    return np.where(gap > LONGEST_GAP_S, np.nan, found)
+    return np.where(gap > longest_gap, np.nan, found)
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,8 @@ from pantocheck.conformance.records.record import find_column
 from pantocheck.conformance.records.sidecar_tables import MarkPosition
 
 Offset = Annotated[float, Field(ge=-1e10, le=1e10)]
-SOURCE_CHANNELS = ("time", "speed", "position", "uplift")
-"""Channels of a further source. Forces, heights, events and arcs are those of the first file."""
+SOURCE_CHANNELS = ("time", "force", "speed", "position", "uplift")
+"""Channels of a further source. Heights, events and arcs are those of the first file."""
 
 
 class ColumnFile(TableSidecar):
@@ -84,7 +84,7 @@ class SourceTable(ColumnFile):
             if meaning is not None and meaning.channel.name not in SOURCE_CHANNELS:
                 yield validation_problem(
                     f"columns.{name[:80]}",
-                    "a further source holds uplift, position or speed only",
+                    "a further source holds force, uplift, position or speed only",
                     "Give it in [columns], with the file at the top of the record.",
                 )
 

@@ -112,7 +112,10 @@ PROGRAMS = {
     "field-coverage": Program("tables.field_coverage", ("field-coverage", "field-modes"), "{docs}/field-records.csv"),
     "line-coverage": Program("tables.line_coverage", ("line-coverage",), "{docs}/line-fits.csv"),
     "line-hold-out": Program("tables.line_hold_out", ("line-hold-out",), "{docs}/line-hold-out.csv"),
-    "network-detection": Program("tables.network_detection", ("network-detection",), "--seeds 21 22 --segments 14"),
+    "network-detection": Program(
+        "tables.network_detection", ("network-detection", "network-cost"), "--seeds 1 2026 --lines 11"
+    ),
+    "dropper-limit": Program("tables.dropper_limit", ("dropper-limit",)),
     "fmu-coupling": Program("fmu.coupling_table", ("fmu-coupling",)),
     "fmu-line": Program("fmu.line_coupling", ("fmu-line", "fmu-importers")),
     "rig-accuracy": Program("rig.rig_accuracy", ("rig-accuracy",)),

@@ -44,7 +44,7 @@ def draft_record_sidecar(parts: Sequence[DescribedTable], layout: TextSettings) 
     file, facts, time = parts[0].file, parts[0].facts, parts[0].time
     own = len(parts) == 1 and all(find_column(fact.column.name or "", fact.column.row) for fact in facts)
     guesses = guess_channels(facts)
-    forces = len(guesses.get("force", [])) or 1
+    forces = sum(len(guess_channels(part.facts).get("force", [])) for part in parts) or 1
     lines = [
         f"# Sidecar of {file}. Complete the lines with {TO_DO.rstrip(':')}, and check the others.",
         f"# See {DocumentationPage.RECORDS}, and {DocumentationPage.LOGGER_FILES}.",
@@ -68,10 +68,11 @@ def draft_record_sidecar(parts: Sequence[DescribedTable], layout: TextSettings) 
         lines += _list_column_lines(facts, guesses, time)
     everywhere = {name: found for part in reversed(parts) for name, found in guess_channels(part.facts).items()}
     lines += _list_position_help(everywhere)
-    uplifts = len(guesses.get("uplift", []))
+    counts = {channel: len(guesses.get(channel, [])) for channel in ("uplift", "force")}
     for part in parts[1:]:
-        lines += _list_source_lines(part, parts[0], uplifts, layout)
-        uplifts += len(guess_channels(part.facts).get("uplift", []))
+        lines += _list_source_lines(part, parts[0], counts, layout)
+        own_guesses = guess_channels(part.facts)
+        counts = {channel: count + len(own_guesses.get(channel, [])) for channel, count in counts.items()}
     return "\n".join(lines) + "\n"
 
 
@@ -92,9 +93,13 @@ def _find_kilometres(guesses: dict[str, list[ChannelFacts]]) -> ChannelFacts | N
     return next((fact for fact in guesses.get("position", []) if fact.unit == "km"), None)
 
 
-def _list_source_lines(part: DescribedTable, first: DescribedTable, uplifts: int, layout: TextSettings) -> list[str]:
-    """Lines of a table `source`; `uplifts` is the number of the supports of the sources before it."""
-    guesses = {name: found for name, found in guess_channels(part.facts).items() if name in SOURCE_CHANNELS}
+def _list_source_lines(
+    part: DescribedTable, first: DescribedTable, counts: dict[str, int], layout: TextSettings
+) -> list[str]:
+    """Lines of a table `source`; `counts` are the numbers of uplifts and forces of the files before it."""
+    known = guess_channels(first.facts).keys() & {"position", "speed"}
+    channels = set(SOURCE_CHANNELS) - known
+    guesses = {name: found for name, found in guess_channels(part.facts).items() if name in channels}
     times = [one.time for one in (first, part) if one.time is not None]
     seconds = max((time.duration for time in times), default=1.0)
     # Both files begin at about the same time, as far as is known.
@@ -116,7 +121,7 @@ def _list_source_lines(part: DescribedTable, first: DescribedTable, uplifts: int
         *(line.replace("[table]", "[source.table]") for line in _list_layout(layout)),
         *(
             line.replace("[columns]", "[source.columns]")
-            for line in _list_column_lines(part.facts, guesses, part.time, uplifts=uplifts, needed=False)
+            for line in _list_column_lines(part.facts, guesses, part.time, counts=counts, needed=False)
         ),
     ]
 
@@ -131,7 +136,7 @@ def _list_column_lines(
     guesses: dict[str, list[ChannelFacts]],
     time: TimeFacts | None,
     *,
-    uplifts: int = 0,
+    counts: dict[str, int] | None = None,
     needed: bool = True,
 ) -> Iterator[str]:
     """Lines of the table `columns`: guesses by unit and name, and the other columns as comments."""
@@ -145,7 +150,7 @@ def _list_column_lines(
         yield f'# time_s = {{ column = "...", unit = "s" }}   # {TO_DO} column of the time'
     for channel, found in guesses.items():
         several = CHANNELS[channel].per == "support"
-        for number, fact in enumerate(found, 1 + uplifts if several else 1):
+        for number, fact in enumerate(found, 1 + (counts or {}).get(channel, 0)):
             used.add(id(fact))
             name = CHANNELS[channel].column(number)
             remark = f"   # {TO_DO} with the supports above" if several else ""

@@ -122,16 +122,16 @@ def test_a_profile_that_demands_a_confirmed_record_passes_no_section(tmp_path: P
     assert assess(runs, profile).verdict == "unconfirmed"
 
 
-def test_a_second_force_file_with_its_own_clock_is_refused(tmp_path: Path) -> None:
+def test_a_second_force_file_with_its_own_clock_is_one_run(tmp_path: Path) -> None:
     pair = MeasuredPair()
     sidecar = pair.write(tmp_path, STATED)
-    text = sidecar.read_text(encoding="utf-8") + PLACE
-    text = text.replace('uplift_1_m = { column = "Anhub Mast 1 [mm]" }', 'force_2_N = { column = "Anhub Mast 1 [mm]" }')
-    sidecar.write_text(text.replace('force_2_N = { column = "Kraft 2 [N]" }\n', ""), encoding="utf-8")
+    write_german(tmp_path / "rear.csv", ["Zeit [s]", "Kraft [N]"], pair.train()[:, [0, 3]] - [5.0, 0.0])
+    text = sidecar.read_text(encoding="utf-8").replace('force_2_N = { column = "Kraft 2 [N]" }\n', "")
+    rear = '[source.columns]\ntime_s = { column = "Zeit [s]" }\nforce_2_N = { column = "Kraft [N]" }\n'
+    join = 'join = { kind = "time", offset_s = 5.0, uncertainty_s = 0.002 }\n'
+    sidecar.write_text(f'{text}[[source]]\nfile = "rear.csv"\n{join}{rear}{PLACE}', encoding="utf-8")
     with open_collection(tmp_path / "runs"):
         (item,) = import_files([sidecar], tmp_path / "runs", None)
-    assert item.state == "refused"
-    assert item.remarks[0].endswith(
-        "source[1].columns.force_2_N: a further source holds uplift, position or speed only. "
-        "Give it in [columns], with the file at the top of the record"
-    )
+    assert item.state == "imported", item.remarks
+    graded = grade(tmp_path / "runs", write_profile(tmp_path, 'quantity = "mean_force_N", upper = 140.0'))
+    assert judge(graded) == [("front", "pass"), ("rear", "pass")] * 2

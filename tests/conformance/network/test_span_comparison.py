@@ -15,6 +15,7 @@ from pantocheck.conformance.network.span_comparison import (
     find_deviations,
     find_spans,
     find_threshold,
+    scale_difference,
     subtract_neighbours,
 )
 
@@ -83,8 +84,9 @@ def test_spans_of_known_supports_are_compared_with_spans_of_their_length() -> No
     spans = find_spans(force, supports)
     np.testing.assert_array_equal(spans[:2], [[0.0, 50.0], [50.0, 110.0]])
     rest = subtract_neighbours(force, spans)
-    # The median of five of the ten neighbours adds to the noise of 1 N; the scale makes it 1.
-    assert np.nanstd(rest) == pytest.approx(1.0, abs=0.05)
+    # The median of five of the ten neighbours adds a variance of 0.287 N2 to the noise of 1 N; the scale makes it 1.
+    assert np.nanstd(rest) == pytest.approx(np.sqrt(1.287), abs=0.05)
+    assert np.nanstd(scale_difference(rest, force)) == pytest.approx(1.0, abs=0.05)
     assert np.abs(np.corrcoef(np.nan_to_num(rest), force - noise)[0, 1]) < 0.05
     assert np.isnan(subtract_neighbours(force, np.array([[0.0, 50.0], [50.0, 110.0]]))).all()  # no neighbours
 

@@ -13,6 +13,7 @@ from helpers.command_line import pantocheck
 from helpers.measured_pairs import PASSAGE, SPEED, STATED, MeasuredPair, write_german
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
 
@@ -312,6 +313,45 @@ def test_position_of_another_file_places_the_force(join: str, tmp_path: Path) ->
     assert [name for name, _, _ in assessed.prepared.place_clocks] == ["gps.csv"]
 
 
+def split_forces(folder: Path, late: float = 0.0, step: int = 1) -> Path:
+    """Rear force in a file of its own, whose clock is 12.3456 s behind and whose offset is stated `late`."""
+    pair = MeasuredPair()
+    sidecar, train = pair.write(folder, STATED), pair.train()
+    write_german(folder / "rear.csv", ["Zeit [s]", "Kraft [N]"], (train[:, [0, 3]] - [12.3456, 0.0])[::step])
+    join = {"kind": "time", "offset_s": 12.3456 + late, "uncertainty_s": 0.002}
+    columns = {"time_s": {"column": "Zeit [s]"}, "force_2_N": {"column": "Kraft [N]"}}
+    return edit_toml(
+        sidecar, {"columns.force_2_N": None, "source.1": {"file": "rear.csv", "join": join, "columns": columns}}
+    )
+
+
+def test_rear_force_of_a_file_with_its_own_clock_is_that_of_one_file(tmp_path: Path) -> None:
+    """Four tenths of a sample lie between the times of both files, so that the rear force is interpolated."""
+    one = assess(MeasuredPair().write(tmp_path, STATED)).values.values
+    (tmp_path / "two").mkdir()
+    both = assess(split_forces(tmp_path / "two")).values.values
+    assert both[1] == one[1]
+    for name in ("mean_force_N", "std_force_N", "max_force_N", "min_force_N", "rms_20_50_N"):
+        # A component of 38 Hz and 12 N is damped by less than 0.1 % between samples of 1 ms.
+        assert both[2][name] == pytest.approx(one[2][name], abs=0.02), name
+    (tmp_path / "late").mkdir()
+    late = assess(split_forces(tmp_path / "late", late=0.5)).values.values
+    assert abs(late[2]["mean_force_N"] - one[2]["mean_force_N"]) > 0.05
+
+
+def test_rear_force_keeps_its_gap_and_needs_the_rate_of_the_first(tmp_path: Path) -> None:
+    """A gap of 20 ms at 8 s, where the rear pantograph is at 360 m, inside the analysis section."""
+    sidecar = split_forces(tmp_path)
+    rows = (tmp_path / "rear.csv").read_text(encoding="cp1252").splitlines()
+    (tmp_path / "rear.csv").write_text("\n".join([*rows[:8000], *rows[8020:]]) + "\n", encoding="cp1252")
+    values = assess(sidecar).values.values
+    assert isinstance(values[1]["mean_force_N"], float)
+    assert not isinstance(values[2].get("mean_force_N"), float)
+    (tmp_path / "slow").mkdir()
+    with pytest.raises(InputError, match="has a force with 500 samples per second, and the first file 1000"):
+        assess(split_forces(tmp_path / "slow", step=2))
+
+
 def test_wrong_clock_of_the_position_is_named_by_the_masts(tmp_path: Path) -> None:
     """The masts cannot tell which of both clocks is wrong; their uplift does not count."""
     sidecar = write_position(tmp_path, 'kind = "time", offset_s = 1.0, uncertainty_s = 0.01', lambda time: time)
@@ -351,8 +391,12 @@ DAMAGES: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
         ("source[1].columns.uplift_3_m", "the sidecar has no support 3"),
     ),
     "force": (
-        edit_keys({"source.0.columns.force_1_N": {"column": "Anhub Mast 1 [mm]"}}),
-        ("source[1].columns.force_1_N", "holds uplift, position or speed only"),
+        edit_keys({"source.0.columns.force_1_N": {"column": "Anhub Mast 1 [mm]", "scale": 1.0, "unit": "N"}}),
+        ("source[1], mast.csv", "repeats the channel force_1_N of another source"),
+    ),
+    "height": (
+        edit_keys({"source.0.columns.contact_height_1_m": {"column": "Anhub Mast 1 [mm]"}}),
+        ("source[1].columns.contact_height_1_m", "holds force, uplift, position or speed only"),
     ),
     "repeated": (
         edit_keys({"columns.uplift_1_m": {"column": "Weg [m]"}}),
