@@ -210,6 +210,15 @@ def own_rules(rules: Iterable[Rule], published: Sequence[Rule]) -> tuple[Rule, .
     )
 
 
+UNREAD = ("tsi", "50367", "50119")
+"""Parts of names of documents of which no rule was read in print."""
+
+UNREAD_HINT = (
+    "No rule of this document was read in print. acceptance-ac, acceptance-dc-3kv and acceptance-dc-1500v have the "
+    "rules of secondary sources, which name no document; state those of your copy in a .toml file of your own."
+)
+
+
 def load_profile(name: str) -> Profile:
     """Read a profile of the library by name, or a profile file by its path, which ends in .toml.
 
@@ -222,5 +231,6 @@ def load_profile(name: str) -> Profile:
         published = load_profile(profile.name).rule if profile.name in known else ()
         return profile.model_copy(update={"rule": own_rules(profile.rule, published)})
     if name not in known:
-        raise InputError(f"profile '{name}'", "there is no profile with this name", suggest_names(name, list(known)))
+        hint = UNREAD_HINT if any(part in name.lower() for part in UNREAD) else suggest_names(name, list(known))
+        raise InputError(f"profile '{name}'", "there is no profile with this name", hint)
     return read_model(known[name], Profile, "profile")

@@ -475,3 +475,9 @@ def test_wrong_profile_names_its_key(tmp_path: Path, changes: dict[str, Any], me
     edit_toml(path, changes)
     with pytest.raises(InputError, match=message):
         load_profile(str(path))
+
+
+@pytest.mark.parametrize("name", ["tsi-ene", "TSI_ENE", "en50367", "en-50119"])
+def test_a_document_that_was_not_read_has_no_profile_and_a_reason(name: str) -> None:
+    with pytest.raises(InputError, match="No rule of this document was read in print"):
+        load_profile(name)
