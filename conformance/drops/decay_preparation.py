@@ -151,6 +151,20 @@ def extend_decay(decay: PreparedDecay, band: FrequencyBand) -> PreparedDecay:
     return replace(decay, linear=linear, lateral=_filter_lateral(decay.record, linear), warnings=kept, driven=True)
 
 
+def prepare_again(decay: PreparedDecay, record: DropRecord, band: FrequencyBand) -> PreparedDecay:
+    """Decay of a record whose clocks were corrected: the same part if it reaches the end of the record.
+
+    An end before that is searched again: wrong clocks look like a disturbance.
+    """
+    if decay.linear.end < record.duration - 2 * decay.linear.dt:
+        return prepare_decay(record, band)
+    filtered = _filter_record(record, decay.columns, decay.release, band, 0.0)
+    start = round((decay.linear.start - filtered.begin / record.rate) / decay.linear.dt)
+    part = (start, filtered.samples.shape[0])
+    linear = _cut_record(record, filtered, part, decay.linear.evidence, decay.linear.poles, decay.linear.warnings)
+    return replace(decay, record=record, linear=linear, lateral=_filter_lateral(record, linear))
+
+
 def _filter_lateral(record: DropRecord, linear: LinearDecay) -> RealArray:
     begin = round(linear.start * record.rate)
     n = linear.samples.shape[0]

@@ -7,12 +7,20 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.drops.classical_poles import find_classical_poles
 from pantocheck.conformance.drops.decay_begin import NO_DELAY, begin_again, cut_begin, find_begin, refuse_begin
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
-from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, extend_decay, prepare_decay
+from pantocheck.conformance.drops.decay_preparation import (
+    LinearDecay,
+    PreparedDecay,
+    extend_decay,
+    prepare_again,
+    prepare_decay,
+)
 from pantocheck.conformance.drops.decay_search import SHORTEST_DECAY
 from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.fit_warnings import SHARED_POLES, list_fit_warnings
 from pantocheck.conformance.drops.identification_plan import (
     IdentificationPlan,
     choose_poles,
@@ -23,12 +31,11 @@ from pantocheck.conformance.drops.identification_plan import (
 )
 from pantocheck.conformance.drops.line_fit import (
     LAST_STEPS,
-    SAME_LENGTH,
+    UNCERTAIN,
     LineFit,
     build_modes,
     fit_line,
     group_into_blocks,
-    measure_ambient_motion,
 )
 from pantocheck.conformance.drops.model_order import (
     PoleSelection,
@@ -57,14 +64,14 @@ BEGIN_STEP = 8.0
 """Time by which a decay begins later if no later part agrees with the others [s]."""
 DRIVEN_STEPS = 4
 """Largest number of steps of the last refinement beside process noise; the search leaves little to refine."""
-SHARED_POLES = 1.5
-"""Misfit above which a warning names the band and the sensor with the largest residual [-]."""
-CLEAR_MOTION = 0.5
-"""Ambient motion over sensor noise, from which on the motion is named as the cause [-]."""
+INCOMPLETE = 5.0
+"""Misfit of poles of a user, above which some are missing: ambient motion would not be told from their modes [-]."""
 NOT_CONTAINED = (
-    "the residual follows the modes, as if the line moved by itself (light wind); with poles or a method chosen by the "
-    "user, the intervals do not contain this motion"
+    "the residual follows the modes, as if the line moved by itself (light wind); with the classical method, or with "
+    "too few poles chosen by the user, the intervals do not contain this motion"
 )
+FEWEST_CERTAIN = 3
+"""Fewest certain modes of an identification, unless half of its modes are certain."""
 NO_PLAN = IdentificationPlan()
 """Plan that changes nothing."""
 
@@ -189,7 +196,10 @@ def identify_decays(
         if moved and not any(record.shared_clock for record in records):
             applied += moved
             progress(f"{records[0].name}: clocks of the sensors")
-            aligned = [exclude_stretches(prepare_decay(align_record(record, moved), band), plan) for record in records]
+            aligned = [
+                exclude_stretches(prepare_again(decay, align_record(decay.record, moved), band), plan)
+                for decay in decays
+            ]
             decays = [begin_again(new, old) for new, old in zip(aligned, decays, strict=True)]
         elif begin.delay == 0:
             break
@@ -206,11 +216,29 @@ def identify_decays(
         # The rates were found from the same decays as the poles: both are estimated together.
         fit = replace(found.fit, poles=compared.poles, covariance=compared.covariance)
         found = replace(found, fit=fit, modes=_report_modes(fit, plan, found.hidden))
+    if _is_free(start, plan):
+        _require_certain(decays[0].record.name, found.modes)
     return replace(found, clocks=clocks, warnings=(*found.warnings, *describe_clocks(clocks)))
 
 
+def _require_certain(name: str, modes: tuple[Mode, ...]) -> None:
+    """Refuse a record whose decay determines hardly any mode.
+
+    Raises:
+        InputError: Fewer than `FEWEST_CERTAIN` modes, and fewer than half, are certain.
+    """
+    certain = sum(mode.certain for mode in modes)
+    if certain < min(FEWEST_CERTAIN, len(modes) / 2):
+        raise InputError(
+            name,
+            f"determines {certain} of its {count_noun(len(modes), 'mode')}: the others have a standard deviation above "
+            f"{100 * UNCERTAIN:g} % of the damping ratio",
+            "Record longer, or drop a smaller mass: as long as droppers slacken, no sum of decays fits.",
+        )
+
+
 def _is_free(start: ComplexArray | None, plan: IdentificationPlan) -> bool:
-    """Whether the identification chooses poles and method; with those of a user it tests nothing and adds no noise."""
+    """Whether the identification chooses poles and method; with those of a user it does not test the begin."""
     return start is None and not plan.changes_poles and plan.method != "classical"
 
 
@@ -222,37 +250,50 @@ def _identify_once(
     plan: IdentificationPlan,
 ) -> Identification:
     """Identify decays from their present begin, beside ambient motion if they show any."""
-    driven = any(decay.driven for decay in decays)
+    driven, given = any(decay.driven for decay in decays), None
     if not (driven and _is_free(start, plan)):
-        identification = _identify_free_decays(decays, band, start, progress, plan)
-        blocks = [block.data for block in identification.fit.blocks]
-        if not driven and residual_excess(identification.fit.poles, blocks) < LEAST_EXCESS:
-            return identification
+        found = _identify_free_decays(decays, band, start, progress, plan)
+        if not driven and residual_excess(found.fit.poles, [block.data for block in found.fit.blocks]) < LEAST_EXCESS:
+            return found
         if not _is_free(start, plan):
-            return replace(identification, warnings=(*identification.warnings, NOT_CONTAINED))
+            if plan.method == "classical" or found.fit.misfit > INCOMPLETE:
+                return replace(found, warnings=(*found.warnings, NOT_CONTAINED))
+            # Poles that were refined without ambient motion follow it.
+            given = found if start is None else replace(found, search=PoleSearch((), (("placed by hand", start),)))
     whole = [decay if decay.driven else exclude_stretches(extend_decay(decay, band), plan) for decay in decays]
-    return _identify_driven_decays(whole, band, progress, plan)
+    return _identify_driven_decays(whole, band, progress, plan, given)
 
 
 def _identify_driven_decays(
-    decays: list[PreparedDecay], band: FrequencyBand, progress: Callable[[str], None], plan: IdentificationPlan
+    decays: list[PreparedDecay],
+    band: FrequencyBand,
+    progress: Callable[[str], None],
+    plan: IdentificationPlan,
+    given: Identification | None,
 ) -> Identification:
-    """Identify decays with ambient motion: the records are blocks of their own, because their motion differs."""
+    """Identify decays with ambient motion: the records are blocks of their own, because their motion differs.
+
+    The poles of an identification that the user chose are refined; none is added.
+    """
     name = decays[0].record.name
     samples = [(decay.linear.samples, decay.linear.dt) for decay in decays]
     places = [(number, slice(0, channels.shape[1])) for number, (channels, _) in enumerate(samples)]
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
     progress(f"{name}: poles beside ambient motion")
-    placed = plan.list_poles("start")
-    longest = max(samples, key=lambda part: part[0].shape[0] * part[1])
-    trials = () if placed.size else _try_start_orders(samples, band) or _try_start_orders([longest], band)
-    start = placed if placed.size else join_start_poles(trials)
-    selection = select_driven_poles(start, data)
-    search = PoleSearch(trials, (("start poles", start), ("added and removed", selection.poles)))
+    if given is None:
+        placed = plan.list_poles("start")
+        longest = max(samples, key=lambda part: part[0].shape[0] * part[1])
+        trials = () if placed.size else _try_start_orders(samples, band) or _try_start_orders([longest], band)
+        search = PoleSearch(trials, (("start poles", placed if placed.size else join_start_poles(trials)),))
+    else:
+        search = given.search
+    hidden = np.zeros(0, dtype=np.complex128) if given is None else given.hidden
+    selection = select_driven_poles(search.steps[-1][1], data, given is None)
+    step = "added and removed" if given is None else "refined beside ambient motion"
+    search = replace(search, steps=(*search.steps, (step, selection.poles)))
     progress(f"{name}: uncertainty")
     fit = fit_line(decays, places, data, selection.poles, selection.noise, band, DRIVEN_STEPS)
-    modes = _report_modes(fit, plan, np.zeros(0, dtype=np.complex128))
-    return Identification(fit, modes, _list_warnings(fit), search)
+    return Identification(fit, _report_modes(fit, plan, hidden), list_fit_warnings(fit), search, hidden=hidden)
 
 
 def _identify_free_decays(
@@ -283,7 +324,7 @@ def _identify_free_decays(
     last_steps = 0 if is_classical else LAST_STEPS
     fit = fit_line(decays, places, data, selection.poles, selection.noise, band, last_steps)
     modes = _report_modes(fit, plan, hidden)
-    return Identification(fit, modes, _list_warnings(fit), search, hidden=hidden)
+    return Identification(fit, modes, list_fit_warnings(fit), search, hidden=hidden)
 
 
 def _report_modes(fit: LineFit, plan: IdentificationPlan, hidden: ComplexArray) -> tuple[Mode, ...]:
@@ -352,48 +393,3 @@ def _find_peaks(data: list[DataBlock]) -> tuple[PoleSelection, PoleSearch]:
     """Poles of the classical method, and the noise that they leave."""
     poles = find_classical_poles(data)
     return PoleSelection(poles, estimate_block_noise(poles, data)), PoleSearch((), (("peaks of the spectrum", poles),))
-
-
-def _describe_ambient(fit: LineFit, ambient: float, noise: float) -> str:
-    """Sentence on the ambient motion and the noise of the sensors [unit of the record]."""
-    unit = {"acceleration": "mm/s2", "velocity": "mm/s", "displacement": "mm"}[fit.records[0].decay.record.quantity]
-    levels = f"{1e3 * ambient:.2g} {unit} RMS, beside {1e3 * noise:.2g} {unit} of sensor noise in the same band"
-    if ambient < CLEAR_MOTION * noise:
-        return f"the noise is not white: coloured, or the line moved by up to {levels}; the intervals contain it"
-    return (
-        f"the line moved by itself during the records, as in light wind: {levels}. The intervals of frequency and "
-        "damping contain this motion, and are wider than in calm air"
-    )
-
-
-def _describe_misfit(fit: LineFit) -> str:
-    """Sentence on the band and the sensor with the largest residual."""
-    bands: dict[int, list[float]] = {}
-    sensors: dict[str, list[float]] = {}
-    for record in fit.records:
-        energy = np.abs(record.block.white_residual[:, record.columns]) ** 2 / 2
-        for band in range(int(fit.band.low), int(fit.band.fitted) + 1):
-            inside = np.floor(record.block.data.omega / (2 * np.pi)) == band
-            bands.setdefault(band, []).extend(energy[inside].mean(axis=1) if inside.any() else ())
-        for name, column in zip(record.decay.channel_names, energy.T, strict=True):
-            sensors.setdefault(name, []).append(float(column.mean()))
-    band = max(bands, key=lambda number: float(np.mean(bands[number] or [0.0])))
-    sensor = max(sensors, key=lambda name: float(np.mean(sensors[name])))
-    return (
-        f"the squared residual of the fit is {fit.misfit:.1f} times that of the noise: "
-        f"{np.mean(bands[band]):.1f} times from {band} to {band + 1} Hz, and {np.mean(sensors[sensor]):.1f} times at "
-        f"channel {sensor}; uncertainties are increased"
-    )
-
-
-def _list_warnings(fit: LineFit) -> tuple[str, ...]:
-    warnings = [text for record in fit.records for text in record.decay.warnings]
-    if ambient := measure_ambient_motion(fit, fit.band.low, fit.band.high):
-        warnings.append(_describe_ambient(fit, *ambient))
-    if fit.misfit > SHARED_POLES:
-        warnings.append(_describe_misfit(fit))
-    lengths = [record.decay.linear.duration for record in fit.records]
-    if max(lengths) > (1 + SAME_LENGTH) * min(lengths):
-        durations = ", ".join(f"{length:.0f} s" for length in lengths)
-        warnings.append(f"the linear decays differ in length ({durations}); each is used over its whole length")
-    return tuple(dict.fromkeys(warnings))

@@ -67,9 +67,17 @@ def select_poles(poles: ComplexArray, blocks: list[DataBlock], rounds: int = 8) 
 
 
 def repeat_selection(
-    poles: ComplexArray, blocks: list[DataBlock], rounds: int, estimate: NoiseEstimate, equal: float
+    poles: ComplexArray,
+    blocks: list[DataBlock],
+    rounds: int,
+    estimate: NoiseEstimate,
+    equal: float,
+    search: bool = True,
 ) -> PoleSelection:
-    """Select poles as `select_poles`, with any noise, until they change by less than a share of their decay rates."""
+    """Select poles as `select_poles`, with any noise, until they change by less than a share of their decay rates.
+
+    Without a search, no pole is added or removed.
+    """
     noise = estimate(poles, blocks, None)
     previous: ComplexArray | None = None
     for _ in range(rounds):
@@ -78,8 +86,9 @@ def repeat_selection(
             break
         previous = poles
         noise = estimate(poles, blocks, noise)
-        white = whiten(blocks, noise)
-        poles = _remove_poles(_add_poles(poles, white, None), white)
+        if search:
+            white = whiten(blocks, noise)
+            poles = _remove_poles(_add_poles(poles, white, None), white)
     return PoleSelection(poles, noise)
 
 

@@ -81,9 +81,12 @@ def residual_excess(poles: ComplexArray, blocks: list[DataBlock]) -> float:
     return found / max(expected, 1.0)
 
 
-def select_driven_poles(poles: ComplexArray, blocks: list[DataBlock]) -> PoleSelection:
-    """Select poles from start poles [1/s], with process noise; the noise of the result belongs to its poles."""
-    selected = repeat_selection(poles, blocks, SEARCH_ROUNDS, estimate_process_noise, EQUAL)
+def select_driven_poles(poles: ComplexArray, blocks: list[DataBlock], search: bool = True) -> PoleSelection:
+    """Select poles from start poles [1/s], with process noise; the noise of the result belongs to its poles.
+
+    Without a search, the start poles are refined in all rounds; none is added, and none in the band is removed.
+    """
+    selected = repeat_selection(poles, blocks, SEARCH_ROUNDS, estimate_process_noise, EQUAL * search, search)
     return PoleSelection(selected.poles, _estimate(selected.poles, blocks, selected.noise, LAST_UPDATES))
 
 

@@ -164,7 +164,7 @@ def _find_start(fit: LineFit, first: int, sensor: int) -> tuple[float, float]:
     for record in fit.records:
         columns = {channel.sensor: number for number, channel in enumerate(record.decay.channels)}
         if first in columns and sensor in columns:
-            a, b = (record.residues[:, columns[key]] / record.noise[columns[key]] for key in (first, sensor))
+            a, b = (record.residues[:, columns[key]] / record.residue_std[:, columns[key]] for key in (first, sensor))
             omega.append(fit.poles.imag)
             phase.append(2 * np.angle(b * a.conj()))
             weight.append(np.minimum(np.abs(a), np.abs(b)))

@@ -37,6 +37,8 @@ class SmallestWidths:
     """Of the damping ratios, (m,) [-]."""
     coefficients: dict[Term, float]
     """Of the coefficients [s, 1/s]."""
+    covariance: RealArray
+    """Covariance of decay rates [1/s] and angular frequencies [rad/s], (2 m, 2 m)."""
 
 
 def compute_smallest_widths(field: FieldRecord, highest: float) -> SmallestWidths:
@@ -61,6 +63,7 @@ def compute_smallest_widths(field: FieldRecord, highest: float) -> SmallestWidth
         COVERED * deviation[m:] / (2 * np.pi),
         COVERED * deviation[:m] / np.abs(poles),
         _bound_coefficients(field, covariance[:m, :m], highest),
+        covariance,
     )
 
 

@@ -184,7 +184,7 @@ def make_record(
     if disturbance.wind:
         motion_of_wind, scale = move_by_wind(line.poles, shape, random, n, noise * disturbance.wind)
         signals = signals + motion_of_wind
-        ambient = scale * _force_gain(line.poles)
+        ambient = scale * force_gain(line.poles)
     if disturbance.clock:
         rates = disturbance.clock * random.standard_normal(count - 1)
         starts = random.uniform(-0.02, 0.02, count - 1)
@@ -199,7 +199,7 @@ def make_record(
     return FieldRecord(record, line, decay, taut, noise, noise * disturbance.coloured, ambient, shape)
 
 
-def _force_gain(poles: ComplexArray) -> RealArray:
+def force_gain(poles: ComplexArray) -> RealArray:
     """Gain of the filter of the forces at the frequency of each mode, (m,) [-]."""
     low = scipy.signal.butter(1, WIND_CORNER, fs=RATE)
     return np.asarray(np.abs(scipy.signal.freqz(*low, worN=np.abs(poles), fs=2 * np.pi * RATE)[1]))

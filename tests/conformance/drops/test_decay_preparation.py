@@ -11,7 +11,7 @@ from helpers.synthetic_drops import SyntheticDrop, drop
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
-from pantocheck.conformance.drops.decay_preparation import prepare_decay
+from pantocheck.conformance.drops.decay_preparation import prepare_again, prepare_decay
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.release import find_release
 
@@ -43,6 +43,19 @@ def test_lateral_channel_has_the_samples_of_the_vertical_ones() -> None:
     assert prepared.lateral.shape == (prepared.linear.samples.shape[0], 1)
     assert prepared.lateral[:, 0] == pytest.approx(prepared.linear.samples[:, 0], abs=1e-10)
     assert prepare_decay(build_record(synthetic), BAND).lateral.shape == (prepared.linear.samples.shape[0], 0)
+
+
+def test_corrected_record_keeps_its_part_unless_that_ended_early() -> None:
+    """The part is that of the search to its end, also if the corrected record would be refused; else it is searched."""
+    record = build_record(simulate_drop(1))
+    decay = prepare_decay(record, BAND)
+    again = prepare_again(decay, record, BAND)
+    assert (again.linear.start, again.linear.first) == (decay.linear.start, decay.linear.first)
+    assert again.linear.samples == pytest.approx(decay.linear.samples, abs=1e-12)
+    noise = replace(record, signals=np.random.default_rng(2).standard_normal(record.signals.shape))
+    assert prepare_again(decay, noise, BAND).linear.start == decay.linear.start
+    early = replace(decay, linear=replace(decay.linear, start=decay.linear.start + 3.0, end=30.0))
+    assert prepare_again(early, record, BAND).linear.start == decay.linear.start
 
 
 def test_linear_decay_has_the_times_of_the_record_and_no_aliases() -> None:

@@ -1,5 +1,6 @@
 """Identification of synthetic records: accuracy against the Cramer-Rao bound, stated uncertainty, refused records."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_writing import write_drop_csv
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
-from pantocheck.conformance.drops.identify import _find_longest, _try_start_orders, identify_modes
+from pantocheck.conformance.drops.identify import _find_longest, _require_certain, _try_start_orders, identify_modes
 from pantocheck.conformance.drops.line_fit import group_into_blocks
 from pantocheck.conformance.drops.mode_groups import number_groups
 from pantocheck.conformance.drops.pole_refinement import refine_poles
@@ -198,6 +199,15 @@ def test_files_of_one_name_without_line_data_belong_to_two_lines(tmp_path: Path)
         records += read_drop_records(tmp_path / folder / "T1.csv")
     assert [record.source for record in records] == ["T1.csv", "T1.csv"]
     assert len(identify_modes(tuple(records), highest=4.0)) == 2
+
+
+@pytest.mark.parametrize(("certain", "modes", "refused"), [(1, 15, True), (0, 8, True), (3, 30, False), (1, 2, False)])
+def test_record_that_determines_hardly_any_mode_is_refused(certain: int, modes: int, refused: bool) -> None:
+    """Fewer than three certain modes, and fewer than half, are no identification of a line."""
+    mode = Mode(frequency_Hz=1.0, damping_ratio=0.01, damping_ratio_std=1e-4, sensor_shape=())
+    found = tuple(mode.model_copy(update={"certain": number < certain}) for number in range(modes))
+    with pytest.raises(InputError, match=rf"determines {certain} of its {modes} modes") if refused else nullcontext():
+        _require_certain("record", found)
 
 
 def test_hand_placed_poles_are_refined_and_none_is_removed() -> None:

@@ -148,6 +148,21 @@ def test_poles_of_a_user_without_ambient_motion_are_warned_of(windy: tuple[Ident
     assert any("the intervals do not contain this motion" in text for text in placed.warnings)
 
 
+def test_poles_of_a_user_keep_their_number_beside_ambient_motion(windy: tuple[Identification, FieldRecord]) -> None:
+    """The identified poles, moved by 1 % of their decay rates, return to themselves with the same intervals."""
+    found, made = windy
+    (placed,) = identify_modes((made.record,), 2.3, found.fit.poles - 0.01 * np.abs(found.fit.poles.real))
+    assert len(placed.modes) == len(found.modes)
+    assert placed.fit.misfit == pytest.approx(1.0, abs=0.15)
+    assert measure_ambient_motion(placed.fit, 0.3, 3.3) is not None
+    assert not any("do not contain this motion" in text for text in placed.warnings)
+    assert placed.search.steps[-1][0] == "refined beside ambient motion"
+    certain = [(a, b) for a, b in zip(placed.modes, found.modes, strict=True) if b.certain]
+    for a, b in certain:
+        assert a.damping_ratio == pytest.approx(b.damping_ratio, abs=b.damping_ratio_std)
+        assert a.damping_ratio_std == pytest.approx(b.damping_ratio_std, rel=0.25)
+
+
 def test_calm_record_has_no_process_noise() -> None:
     made = make_field_record(1, Disturbance())
     found = identify(made)
