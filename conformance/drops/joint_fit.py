@@ -246,7 +246,8 @@ def _find_scatter(problem: _Problem, fit: JointFit, used: IntegerArray) -> Scatt
 def _estimate_scatter(values: RealArray, columns: RealArray, noise: RealArray, smallest: float) -> float:
     """Scatter of values beside their noise: its median under the restricted likelihood [2].
 
-    Each scatter is as likely as another before. The most likely one is too small in more than half of all fits.
+    Each scatter is as likely as another before. The median was chosen after coverage had been seen: the most likely
+    scatter is too small too often, and the mean too large (docs/identification-coverage.md).
 
     Args:
         values: Values, (n,).

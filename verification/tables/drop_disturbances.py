@@ -161,7 +161,7 @@ def main() -> None:
     options = parser.parse_args()
     truth = json.loads((options.folder / "truth.json").read_text())["tests"]["T1"]
     runs = read_drop_records(options.folder / "T1.h5")[: options.seeds]
-    heads = ["disturbance", "refused", "intervals", "damping contained [%]", "frequency contained [%]"]
+    heads = ["disturbance", "refused", "intervals", "frequency contained [%]", "damping contained [%]"]
     heads += ["largest error [sd]", "modes", "spurious", "certain and spurious"]
     vertical = truth["vertical_modes"]
     rows = [
