@@ -70,7 +70,7 @@ NOT_CONTAINED = (
     "the residual follows the modes, as if the line moved by itself (light wind); with the classical method, or with "
     "too few poles chosen by the user, the intervals do not contain this motion"
 )
-FEWEST_CERTAIN = 3
+LEAST_CERTAIN = 3
 """Fewest certain modes of an identification, unless half of its modes are certain."""
 NO_PLAN = IdentificationPlan()
 """Plan that changes nothing."""
@@ -225,10 +225,10 @@ def _require_certain(name: str, modes: tuple[Mode, ...]) -> None:
     """Refuse a record whose decay determines hardly any mode.
 
     Raises:
-        InputError: Fewer than `FEWEST_CERTAIN` modes, and fewer than half, are certain.
+        InputError: Fewer than `LEAST_CERTAIN` modes, and fewer than half, are certain.
     """
     certain = sum(mode.certain for mode in modes)
-    if certain < min(FEWEST_CERTAIN, len(modes) / 2):
+    if certain < min(LEAST_CERTAIN, len(modes) / 2):
         raise InputError(
             name,
             f"determines {certain} of its {count_noun(len(modes), 'mode')}: the others have a standard deviation above "
