@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.hdf5_table import open_hdf5, read_numbers
+from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import DocumentationPage
 
@@ -56,8 +56,11 @@ def read_wire_shapes(path: Path) -> WireShapes:
 
     Raises:
         InputError: The file is damaged, lacks a data set, or its data sets contradict each other.
+        MissingPackage: The extra `massdrop` is not installed.
     """
     where = f"shapes '{path.name}'"
+    with refuse_missing_package(where):
+        from pantocheck.conformance.core.hdf5_table import open_hdf5, read_numbers
     with open_hdf5(path, MOST_SHAPE_VALUES) as file:
         arrays = {str(name): read_numbers(item, f"{where}, data set {str(name)[:80]!r}") for name, item in file.items()}
     time = _select(arrays, "time_s", (None,), where)
