@@ -96,7 +96,7 @@ def draw_bars(groups: Sequence[Sequence[BandBar]]) -> str:
     scale = (FOOT - TOP) / (max(tops) or 1.0)
     step = (WIDTH - LEFT) / len(BANDS)
     parts = [
-        _write(LEFT - 8, TOP - 4, "RMS [N]", "end"),
+        _write(0, TOP - 4, "RMS [N]", "start"),
         f'<line x1="{LEFT - 4:g}" y1="{FOOT:g}" x2="{WIDTH:g}" y2="{FOOT:g}" stroke="{INK}" stroke-width="0.8"/>',
     ]
     for number, (band, group) in enumerate(zip(BANDS, groups, strict=True)):

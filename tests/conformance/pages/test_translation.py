@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from helpers.example_passage import with_passage
 from helpers.example_results import example, with_measured_run, with_reference
 from helpers.untranslated import build_pages, find_untranslated, list_kept_words
 from pantocheck.conformance.cases.library import find_entries, load_entry, read_bibliography, source_text
@@ -30,7 +31,7 @@ from pantocheck.conformance.results.report_files import LANGUAGES, Language
 ROOT = Path(__file__).parents[3]
 OTHERS = LANGUAGES[1:]
 NUMBER = re.compile(r"\d+(?:\.\d+)*")
-EXAMPLES = (example, with_measured_run, with_reference)
+EXAMPLES = (example, with_measured_run, with_reference, with_passage)
 
 
 @pytest.mark.parametrize("language", OTHERS)
