@@ -189,7 +189,7 @@ class Cost(NamedTuple):
 
     processor_s: float
     largest_MB: float
-    """Largest memory."""
+    """Largest memory; not less than that of this program."""
 
 
 def run_command(*arguments: object) -> Cost:
