@@ -19,6 +19,9 @@ from pantocheck.model.kernel_cache import drop_outdated_kernels, provide_kernel_
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+NEVER_CALLED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options of a compiled function that only compiled functions call: it needs no code that unpacks objects of Python."""
+
 
 class LateObject:
     """Object of numba that does not exist before it is needed; a compiled function names it like the object itself."""
@@ -85,13 +88,13 @@ def _late(kind: type[EntryKernel] | type[InnerKernel], function: Function, **opt
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function of a time step for its callers, and keep it; other threads of Python run meanwhile."""
-    compiled: Function = _late(InnerKernel, function, nogil=True)
+    """Compile a function of a time step for its callers, and keep it for other processes."""
+    compiled: Function = _late(InnerKernel, function, **NEVER_CALLED)
     return compiled
 
 
 def entry_kernel(function: Function) -> Function:
-    """Compile a function that Python calls, or run its twin of the core in C."""
+    """Compile a function that Python calls, or run its twin of the core in C; other threads of Python run meanwhile."""
     compiled: Function = _late(EntryKernel, function, nogil=True)
     return compiled
 
@@ -101,7 +104,7 @@ def inline_kernel(function: Function) -> Function:
 
     For functions of vectors, and for those that receive all arrays of a line: a call would copy their descriptions.
     """
-    compiled: Function = _late(InnerKernel, function, forceinline=True)
+    compiled: Function = _late(InnerKernel, function, **NEVER_CALLED, forceinline=True)
     return compiled
 
 
@@ -110,7 +113,7 @@ def merged_kernel(function: Function) -> Function:
 
     It is not compiled by itself then, which saves time in the first run after an installation.
     """
-    compiled: Function = _late(InnerKernel, function, inline="always")
+    compiled: Function = _late(InnerKernel, function, **NEVER_CALLED, inline="always")
     return compiled
 
 

@@ -73,8 +73,8 @@ def test_writable_folder_is_found(path: str, writable: bool, tmp_path: Path) -> 
 def test_kernels_are_loaded_from_a_read_only_installation_without_home() -> None:
     """Another user, who may read everything and write nothing but the folder of temporary files."""
     code = (
-        "import os, numpy; from pantocheck.model.dynamics.active_window import search\n"
-        "search.built(numpy.arange(3.0), 0, 3, 1.0); print(os.environ['NUMBA_CACHE_DIR'])"
+        "import os; from pantocheck.model.dynamics.active_window import search\n"
+        "search.built.compile('(float64[::1], int64, int64, float64)'); print(os.environ['NUMBA_CACHE_DIR'])"
     )
     user = [
         "setpriv",
@@ -102,9 +102,8 @@ def test_kernels_are_loaded_from_a_read_only_installation_without_home() -> None
 def test_second_process_loads_the_kernels_of_the_first(tmp_path: Path) -> None:
     """Also a worker of a pool or of pytest: a fresh process with the same folder compiles nothing."""
     code = """
-import numpy as np
 from pantocheck.model.dynamics.active_window import search
-search.built(np.arange(7.0), 0, 7, 0.5)
+search.built.compile("(float64[::1], int64, int64, float64)")
 print(sum(search.stats.cache_misses.values()), sum(search.stats.cache_hits.values()))
 """
     environment = os.environ | {kernel_cache.VARIABLE: str(tmp_path)}
