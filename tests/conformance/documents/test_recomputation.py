@@ -245,3 +245,13 @@ def test_item_of_a_list_is_compared_with_its_own_value(passing: dict[str, Any]) 
                                     (3, 0.896, False), (None, 0.896, False)):  # fmt: skip
         row |= {"item": item, "value": value, "margin": 2 * min(value - 0.5, 1.5 - value)}
         assert (recompute(passing) == []) is consistent
+
+
+def test_width_of_a_joint_sample_may_differ_by_the_rounding_of_its_draws(ungraded: dict[str, Any]) -> None:
+    """Draws are rounded to 1e-5 of the value: components of zero leave room for half of it, and not for its double."""
+    case = ungraded["cases"][0]
+    value = case["quantities"]["1"]["mean_force_N"]
+    case["uncertainty_components"]["1"]["mean_force_N"] = {"discretisation": 0.0, "start": 0.0}
+    for share, wrong in ((0.5e-5, 0), (2e-5, 1)):
+        case["uncertainty"]["1"]["mean_force_N"] = share * value
+        assert len(recompute(ungraded)) == wrong, share
