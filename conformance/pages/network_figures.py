@@ -2,15 +2,25 @@
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.figure_style import CROSS, FULL, INK, VERDICT_COLOURS, add_legend, render_svg
+from pantocheck.conformance.core.figure_style import (
+    CROSS,
+    FULL,
+    INK,
+    VERDICT_COLOURS,
+    add_legend,
+    new_figure,
+    render_svg,
+)
 from pantocheck.conformance.core.verdicts import WORST_FIRST
 from pantocheck.conformance.results.network_format import ForcePlace, NetworkResults, SectionGroup, TrackSection
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 EARTH_KM = 6371.0
 """Mean radius of the Earth [km]."""
@@ -42,9 +52,9 @@ def list_coordinates(results: NetworkResults) -> TrackLines:
 
 
 @render_svg
-def draw_track(groups: Sequence[SectionGroup]) -> Figure:
+def draw_track(groups: Sequence[SectionGroup]) -> "Figure":
     """Line diagram: mean force of the sections of a track by kilometre, above a strip of their worst verdicts."""
-    figure = Figure(figsize=(FULL, 2.3))
+    figure = new_figure(FULL, 2.3)
     force, strip = figure.subplots(2, sharex=True, height_ratios=(5, 1))
     known = [group for group in groups if "mean_force_N" in group.values]
     middles = [(group.section.from_km + group.section.to_km) / 2 for group in known]
@@ -65,9 +75,11 @@ def draw_track(groups: Sequence[SectionGroup]) -> Figure:
 
 
 @render_svg
-def draw_network_map(results: NetworkResults, tracks: TrackLines) -> Figure:
+def draw_network_map(results: NetworkResults, tracks: TrackLines) -> "Figure":
     """Sections in the colour and width of their worst verdict, as far as their ends lie between located places."""
-    figure = Figure(figsize=(FULL, 4.5))
+    from matplotlib.collections import LineCollection
+
+    figure = new_figure(FULL, 4.5)
     axes = figure.subplots()
     middle = np.concatenate(list(tracks.values()))[:, 1:].mean(axis=0)
     shapes = defaultdict[str, list[RealArray]](list)
