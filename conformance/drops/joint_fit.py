@@ -10,8 +10,6 @@ span modes, so that a group which the wires do not explain remains visible.
 
 References:
     [1] S. F. Schmidt, Application of state-space methods to navigation problems, Advances in Control Systems 3 (1966).
-    [2] A. Gelman, Prior distributions for variance parameters in hierarchical models, Bayesian Analysis 1 (2006)
-        515-534. doi:10.1214/06-BA117A
 """
 
 from dataclasses import dataclass
@@ -73,11 +71,8 @@ class Scatter(NamedTuple):
 START_SCATTER = Scatter(5e-4, MODEL_ERROR, 1.0)
 """Scatter of the first solution."""
 
-LEAST_SCATTER = Scatter(1e-5, 1e-4, 0.05)
+LEAST_SCATTER = Scatter(1e-5, 5e-4, 0.05)
 """Scatter by the discretisation alone: a fit of few modes cannot be better than its line."""
-
-SCATTER_TRIALS = 60
-"""Number of scatters whose likelihood is compared."""
 
 
 @dataclass(frozen=True)
@@ -104,8 +99,6 @@ class JointFit:
     """Scatter of the line model."""
     freedom: int
     """Degrees of freedom of the scatter of the damping ratios."""
-    scatter_share: float
-    """Share of this scatter in the variance of the damping ratios, with their weights [-]."""
     misfit: float
     """Squared residual over its expectation [-]; above 1, it widens the covariance."""
 
@@ -228,46 +221,30 @@ def _fit_linear(problem: _Problem) -> JointFit:
 
 
 def _find_scatter(problem: _Problem, fit: JointFit, used: IntegerArray) -> Scatter:
-    """Scatter of the line model by the residuals of each part of the data."""
+    """Scatter of the line model with which each part of the residuals has its expected size."""
     left, count = problem.residual(fit, used), used.size
     measured = problem.linear.matched.measured.select(used)
-    groups = np.equal.outer(measured.group, np.unique(measured.group)).astype(float)
-    ratio_std = measured.std / measured.damping_ratio
+    ratio, numbers = left[count : 2 * count] / measured.damping_ratio, np.unique(measured.group)
+    means = np.array([ratio[measured.group == number].mean() for number in numbers])
+    within = ratio - means[np.searchsorted(numbers, measured.group)]
     modes = [problem.linear.matched.paired[i] for i in used]
     frequency_std = np.array([(mode.frequency_std_Hz or 0.0) / mode.frequency_Hz for mode in modes])
-    slope, shape = problem.linear.frequency_slope[np.ix_(used, problem.prior.is_free)], left[2 * count :]
+    shape = left[2 * count :]
     return Scatter(
-        _estimate_scatter(left[:count], slope, frequency_std, LEAST_SCATTER.frequency),
-        _estimate_scatter(left[count : 2 * count] / measured.damping_ratio, groups, ratio_std, LEAST_SCATTER.damping),
+        _match_size(left[:count], frequency_std, count - int(problem.prior.is_free.sum()), LEAST_SCATTER.frequency),
+        _match_size(within, measured.std / measured.damping_ratio, count - numbers.size, LEAST_SCATTER.damping),
         max(float(np.sqrt(np.mean(shape**2))), LEAST_SCATTER.shape) if shape.size else 1.0,
     )
 
 
-def _estimate_scatter(values: RealArray, columns: RealArray, noise: RealArray, smallest: float) -> float:
-    """Scatter of values beside their noise: its median under the restricted likelihood [2].
+def _match_size(residual: RealArray, noise: RealArray, freedom: int, smallest: float) -> float:
+    """Scatter s for which the sum of residual^2 / (noise^2 + s^2) is the number of degrees of freedom."""
 
-    Each scatter is as likely as another before. The median was chosen after coverage had been seen: the most likely
-    scatter is too small too often, and the mean too large (docs/identification-coverage.md).
+    def excess(scatter: float) -> float:
+        return float(np.sum(residual**2 / (noise**2 + scatter**2))) - max(freedom, 1)
 
-    Args:
-        values: Values, (n,).
-        columns: Columns, (n, t), which are fitted to the values with the weights 1 / (noise^2 + scatter^2). Other
-            weights would let the noise of one value into the residuals of all.
-        noise: Standard deviations of the values without the scatter, (n,).
-        smallest: Smallest scatter.
-    """
-    largest = float(np.sqrt(np.sum(values**2))) + 2 * smallest
-    trials, likelihood = np.geomspace(smallest / 10, largest, SCATTER_TRIALS), []
-    for trial in trials:
-        deviation = np.hypot(noise, trial)
-        q, r = np.linalg.qr(columns / deviation[:, None])
-        left = values / deviation - q @ (q.T @ (values / deviation))
-        # A property without effect has a column of zeros.
-        sizes = np.maximum(np.abs(np.diag(r)), np.finfo(float).tiny)
-        likelihood.append(-np.sum(np.log(deviation)) - np.sum(np.log(sizes)) - left @ left / 2)
-    weight = np.exp(np.array(likelihood) - max(likelihood))
-    mass = np.cumsum(weight * np.gradient(trials))
-    return max(float(np.interp(mass[-1] / 2, mass, trials)), smallest)
+    largest = float(np.sqrt(np.sum(residual**2))) + smallest
+    return smallest if excess(smallest) <= 0 else float(scipy.optimize.brentq(excess, smallest, largest))
 
 
 def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> JointFit:
@@ -292,9 +269,7 @@ def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> Join
     moved = problem.factors.copy()
     moved[free] += np.clip((scale * solution)[: len(own)], -LARGEST_STEP, LARGEST_STEP)
     residual, scaled = rows.target - matrix @ (scale * solution), matrix[ratio] * scale
-    measured = problem.linear.matched.measured.select(used)
-    groups = np.unique(measured.group)
-    weight = 1 / (measured.std**2 + (scatter.damping * measured.damping_ratio) ** 2)
+    groups = np.unique(problem.linear.matched.measured.group[used])
     return JointFit(
         linear=problem.linear,
         factors=moved,
@@ -306,7 +281,6 @@ def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> Join
         frequency_residual=residual[: used.size],
         scatter=scatter,
         freedom=max(used.size - groups.size, 1),
-        scatter_share=float(np.sum((scatter.damping * measured.damping_ratio * weight) ** 2) / np.sum(weight)),
         misfit=misfit,
     )
 

@@ -29,13 +29,9 @@ DETERMINED = 0.7
 """Largest standard deviation of a determined property over that of its prior [-]: half of the variance."""
 
 
-def quantile_95(fit: JointFit, share: float = 1.0) -> float:
-    """Half of a 95 % interval in standard deviations, by Student's distribution for the found scatter.
-
-    Its degrees of freedom grow as the share of the scatter in the variance falls: the rest is known noise
-    (Satterthwaite 1946).
-    """
-    return float(scipy.stats.t.ppf(0.975, fit.freedom / max(share, 0.01) ** 2))
+def quantile_95(fit: JointFit) -> float:
+    """Half of a 95 % interval in standard deviations, by Student's distribution for the found scatter."""
+    return float(scipy.stats.t.ppf(0.975, fit.freedom))
 
 
 def list_properties(fit: JointFit, prior: Prior) -> tuple[FittedProperty, ...]:
@@ -132,5 +128,5 @@ def assess_groups(fit: JointFit) -> tuple[GroupResidual, ...]:
 def build_intervals(fit: JointFit) -> tuple[RealArray, RealArray]:
     """Ends of the 95 % intervals of the coefficients, (t,); a coefficient is never negative."""
     count = fit.values.size
-    width = quantile_95(fit, fit.scatter_share) * np.sqrt(np.diag(fit.covariance)[-count:])
+    width = quantile_95(fit) * np.sqrt(np.diag(fit.covariance)[-count:])
     return np.maximum(fit.values - width, 0.0), fit.values + width

@@ -110,7 +110,7 @@ PROGRAMS = {
     ),
     "disturbances": Program("tables.drop_disturbances", ("disturbances", "disturbances-tensions"), "{drops}"),
     "field-coverage": Program("tables.field_coverage", ("field-coverage", "field-modes"), "{docs}/field-records.csv"),
-    "sampled-modes": Program("tables.sampled_modes", ("sampled-modes",)),
+    "sampled-modes": Program("tables.sampled_modes", ("sampled-modes",), "--draws 21"),
     "line-coverage": Program("tables.line_coverage", ("line-coverage",), "{docs}/line-fits.csv"),
     "line-hold-out": Program("tables.line_hold_out", ("line-hold-out",), "{docs}/line-hold-out.csv"),
     "network-detection": Program(
