@@ -37,6 +37,10 @@ class DrawnFigure(str):
         figure.data = tuple(data)
         return figure
 
+    def __getnewargs__(self) -> tuple[str, tuple[DrawnData, ...]]:  # type: ignore[override]
+        """Arguments of a copy in another process."""
+        return str(self), self.data
+
 
 def name_panel(x: str, y: str) -> str:
     """Name of a panel by those of its axes."""

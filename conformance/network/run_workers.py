@@ -44,8 +44,7 @@ def open_workers(jobs: int, scheduler: str | None) -> Iterator[MapRuns]:
             yield partial(_map_in_order, partial(client.submit, pure=False), 2 * threads)
     elif jobs > 1:
         # Fresh interpreters: threads of a compiled kernel do not survive a fork.
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(jobs, context, handle_worker_signals) as pool:
+        with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), handle_worker_signals) as pool:
             yield partial(_map_in_order, pool.submit, 2 * jobs)
     else:
         yield map

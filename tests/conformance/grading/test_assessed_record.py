@@ -50,7 +50,7 @@ def load(tmp_path: Path) -> Load:
         (LineTable(span_m=54.0), {"line": {"span_m": 45.0}}, 54.0),
         (LineTable(span_m=54.0), {"support_position_m": [0.0, 63.0, 126.0]}, 54.0),
         (NOTHING, {"support_position_m": [0.0, 63.0, 126.0, 184.5]}, 63.0),
-        (NOTHING, {"support_position_m": [126.0, 0.0, 63.0, 126.0]}, 63.0),
+        (NOTHING, {"support_position_m": [126.0, 0.0, 63.0]}, 63.0),
         (NOTHING, {"support_position_m": [0.0, 4.0, 54.0, 58.0, 112.0, 116.0, 900.0]}, 52.0),  # 50 m and 54 m
         (NOTHING, {"support_position_m": [0.0, 300.0, 303.0]}, 60.0),
         (NOTHING, {}, 60.0),

@@ -1,6 +1,7 @@
 """Figures as files: one SVG for each figure of a certificate in its order, and its points as numbers."""
 
 import csv
+from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -57,6 +58,9 @@ def test_bars_and_lines_of_a_chart_are_its_data() -> None:
     data = Chart.model_validate(chart("measured", "Damping ratios"))
     drawn = draw_chart(data)
     assert isinstance(drawn, DrawnFigure)
+    copied = deepcopy(drawn)  # in the way of a page that another process writes
+    assert isinstance(copied, DrawnFigure)
+    assert (copied, len(copied.data)) == (drawn, len(drawn.data))
     named = {part.label: part for part in drawn.data if part.label}
     series = data.series[0]
     np.testing.assert_allclose(named[series.label].y, series.y)
