@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 import tomli_w
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from helpers.toml_edit import edit_toml
@@ -108,10 +108,20 @@ VALUES = {
     "min_force_N": st.floats(40, 80),
     "contact_loss_pct": st.sampled_from([0.0, 1e-9, 100.0]),
 }
+INSIDE = {
+    "mean_force_N": 115.0,
+    "std_force_N": 28.0,
+    "statistical_max_N": 200.0,
+    "statistical_min_N": 30.0,
+    "max_force_N": 190.0,
+    "min_force_N": 60.0,
+    "contact_loss_pct": 0.0,
+}
 
 
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.fixed_dictionaries(VALUES), st.floats(40, 60))
+@example(INSIDE, 50.0)
 def test_summary_passes_if_every_value_is_inside(tmp_path: Path, values: dict[str, float], uplift: float) -> None:
     (case,) = select_cases(["en50318-2002/250"])
     path = tmp_path / "a.toml"
@@ -124,7 +134,7 @@ def test_summary_passes_if_every_value_is_inside(tmp_path: Path, values: dict[st
         and (limit.upper is None or graded[limit.quantity] <= limit.upper)
         for limit in case.limits
     )
-    assert (result.verdict == "pass") == inside
+    assert (result.verdict == "unconfirmed") == inside  # nothing confirms a summary
 
 
 SOUND = {"speed_km_h": 250.0, "pantographs": 1, "filter_applied_Hz": "none", "file": "a.csv"}
