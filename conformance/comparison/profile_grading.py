@@ -16,7 +16,12 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.packed_samples import SignalSamples
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.trust import Trust
-from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, join_digests
+from pantocheck.conformance.grading.assessed_record import (
+    AssessedRecord,
+    find_equal_pantograph,
+    find_span_length,
+    join_digests,
+)
 from pantocheck.conformance.grading.case_conformity import find_case_conformity
 from pantocheck.conformance.grading.case_identity import compare_profile_with_library, profile_limits_digest
 from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation, judge_case
@@ -44,6 +49,11 @@ from pantocheck.conformance.results.case_facts_format import (
     SpanStatistics,
 )
 from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts, SystemIdentity
+
+LARGEST_SECTION_SHIFT = 0.5
+"""Largest difference between the ends of two analysis sections, in spans or shorter sections: with more, another place
+counts."""
+
 
 # Measured run beside a simulated one: filtered forces at the same positions, spectra, and statistics by span.
 
@@ -253,6 +263,31 @@ def check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile
             f"its contact force of pantograph {number} is that of {subject.name}: one record is a copy of the other",
             "Compare a simulated record with an independent measured record.",
         )
+    spans = [find_span_length(record.line, record.header) for record in (subject, measured)]
+    if (sections := describe_other_section(subject, measured, min(spans))) is not None:
+        raise InputError(where, sections, "Compare records of the same section: state the same evaluated_m.")
+
+
+def describe_other_section(simulated: AssessedRecord, measured: AssessedRecord, span_m: float) -> str | None:
+    """Describe the analysis sections of two records whose ends differ by more than half a span; None: they agree.
+
+    In a section shorter than a span, the length of the shorter section takes the place of the span.
+
+    Args:
+        simulated: Record of the simulated passage.
+        measured: Record of the measured passage.
+        span_m: Length of a span [m].
+    """
+    own, other = simulated.header.evaluated_m, measured.header.evaluated_m
+    if own is None or other is None:
+        return None  # a record with samples then has no quantities, and says so
+    allowed = LARGEST_SECTION_SHIFT * min(span_m, own[1] - own[0], other[1] - other[0])
+    if max(abs(a - b) for a, b in zip(own, other, strict=True)) <= allowed:
+        return None
+    return (
+        f"the analysis section of the measured run: {other[0]:g} to {other[1]:g} m; "
+        f"of the simulated run: {own[0]:g} to {own[1]:g} m"
+    )
 
 
 def _run_facts(subject: AssessedRecord, profile: Profile) -> RunFacts:

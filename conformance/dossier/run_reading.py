@@ -11,7 +11,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.cases.start_and_section import span_length
 from pantocheck.conformance.comparison.force_difference import COPY_CORRELATION, compare_likeness
-from pantocheck.conformance.comparison.profile_grading import list_run_supports
+from pantocheck.conformance.comparison.profile_grading import describe_other_section, list_run_supports
 from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
@@ -25,9 +25,6 @@ from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.runs.record_folder import SPACING_TOLERANCE_M
 from pantocheck.conformance.runs.system import Delivered, System, missing_record_reason
-
-LARGEST_SHIFT_SPANS = 0.5
-"""Largest difference between the ends of the analysis sections of a pair, in spans: with more, another span counts."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +92,8 @@ def list_mismatches(simulated: RunSide, measured: RunSide, profile: Profile) -> 
             recorded = count_noun(len(side.record.pantographs), "pantograph")
             yield f"the {run} record has {recorded}, {len(side.pantographs)} named"
     yield from _compare_spacing(simulated, measured)
-    yield from _compare_sections(simulated, measured)
+    if (sections := describe_other_section(simulated.record, measured.record, simulated.span_m)) is not None:
+        yield sections
 
 
 def _compare_spacing(simulated: RunSide, measured: RunSide) -> Iterator[str]:
@@ -106,23 +104,6 @@ def _compare_spacing(simulated: RunSide, measured: RunSide) -> Iterator[str]:
         for own, other in pairs:
             if abs(own - other) > SPACING_TOLERANCE_M:
                 yield f"the spacing of the measured run: {other:g} m; of the simulated run: {own:g} m"
-
-
-def _compare_sections(simulated: RunSide, measured: RunSide) -> Iterator[str]:
-    own, other = (_section(side.record) for side in (simulated, measured))
-    if own is None or other is None:
-        return  # a record without an analysis section has no quantities, and says so
-    allowed = LARGEST_SHIFT_SPANS * simulated.span_m
-    if max(abs(a - b) for a, b in zip(own, other, strict=True)) > allowed:
-        yield (
-            f"the analysis section of the measured run: {other[0]:g} to {other[1]:g} m; "
-            f"of the simulated run: {own[0]:g} to {own[1]:g} m"
-        )
-
-
-def _section(record: AssessedRecord) -> tuple[float, float] | None:
-    stated = record.header.evaluated_m
-    return None if stated is None else (stated[0], stated[1])
 
 
 # Runs of a pair: a case that the system under test runs, or a record.

@@ -122,7 +122,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         record_digest=record_digest(path, *tables),
         force_digest=force_digest,
         values=evaluate_by_profile(prepared, samples, sidecar, known_line),
-        uncertainty=assess_uncertainty(prepared, _span_length(known_line, sidecar), force_digest),
+        uncertainty=assess_uncertainty(prepared, find_span_length(known_line, sidecar), force_digest),
         prepared=prepared,
         notes=prepared.notes,
         warnings=(*prepared.warnings, *exclusion_warnings),
@@ -208,11 +208,11 @@ def _assess_summary(path: Path, summary: RecordSummary, profile: Profile, line: 
     )
 
 
-def _span_length(line: LineTable, sidecar: RecordSidecar) -> float:
+def find_span_length(line: LineTable, header: RecordSidecar | RecordSummary) -> float:
     """Length of a span [m]: as stated, or from the supports."""
     if line.span_m is not None:
         return line.span_m
-    distances = np.diff(np.unique(sidecar.support_position_m or ()))
+    distances = np.diff(np.unique(getattr(header, "support_position_m", None) or ()))
     shortest, longest = PLAUSIBLE_SPANS_M
     plausible = distances[(distances >= shortest) & (distances <= longest)]
     return float(np.median(plausible)) if plausible.size else ASSUMED_SPAN_M

@@ -10,6 +10,7 @@ import pytest
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record, compare_measured_run, list_run_supports
 from pantocheck.conformance.core.figure_data import Spectrum
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
 from pantocheck.conformance.pages import document as doc
@@ -86,6 +87,33 @@ def test_runs_without_common_track_have_no_common_curves(run: Run) -> None:
     simulated = Spectrum(frequency_Hz=[0.0, 1.0, 2.0, 3.0], amplitude_N=[1.0, 2.0, 3.0, 4.0])
     measured = Spectrum(frequency_Hz=[0.5, 2.5], amplitude_N=[1.0, 3.0])
     assert spectrum_difference(simulated, measured) == ([1.0, 2.0], [0.5, 0.5])
+
+
+@pytest.mark.parametrize(
+    ("own", "other", "refused"),
+    [
+        ((120.0, 480.0), (150.0, 450.0), False),  # half a span of 60 m at either end
+        ((120.0, 480.0), (151.0, 480.0), True),
+        ((120.0, 480.0), (120.0, 449.0), True),
+        ((120.0, 480.0), (89.0, 480.0), True),
+        ((120.0, 480.0), (120.0, 511.0), True),
+        ((200.0, 260.0), (260.0, 320.0), True),  # the next span
+        ((300.0, 350.0), (325.0, 375.0), False),  # half of 50 m, which is shorter than a span
+        ((300.0, 350.0), (326.0, 376.0), True),
+        ((300.0, 350.0), (300.0, 332.0), True),  # 18 m are more than half of 32 m
+        ((300.0, 332.0), (300.0, 350.0), True),
+    ],
+)
+def test_records_of_other_sections_are_refused(
+    run: Run, own: tuple[float, float], other: tuple[float, float], refused: bool
+) -> None:
+    profile, records = load_profile("line-test"), (run("simulated", section=own), run("measured", 1.0, section=other))
+    if not refused:
+        assert assess_record(records[0], profile, "provisional", records[1]).cases
+        return
+    sections = f"measured run: {other[0]:g} to {other[1]:g} m; of the simulated run: {own[0]:g} to {own[1]:g} m"
+    with pytest.raises(InputError, match=sections):
+        assess_record(records[0], profile, "provisional", records[1])
 
 
 def test_certificate_shows_both_runs(run: Run) -> None:
