@@ -17,6 +17,7 @@ from pantocheck.conformance.cases.profile_file import (
 )
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
+from pantocheck.conformance.core.near_limit import BOUNDED_COMPONENTS
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
 from pantocheck.conformance.grading.case_identity import describe_limit_change
@@ -73,6 +74,7 @@ class RuleGrading:
 
     def _grade_rule(self, rule: Rule, owner: int) -> Criterion:
         try:
+            self._check_centre(rule, owner)
             limit = self._resolve_rule(rule, owner)
             return self._grade_limit(limit, _doubt_tolerance(rule, limit))
         except BoundMissing as reason:
@@ -87,6 +89,21 @@ class RuleGrading:
                 value=value,
                 trust=rule.trust,
                 lowest_trust=self.trust,
+            )
+
+    def _check_centre(self, rule: Rule, owner: int) -> None:
+        """Check that the record of a measured value bounds its error; by the same rule, no value passes without it.
+
+        Raises:
+            BoundMissing: The effect of the sampling rate, resolution or clocks on the measured value is not known.
+        """
+        if not rule.compares or self.measured is None:
+            return
+        unknown = self.measured.uncertainty.list_unknown(owner, rule.quantity)
+        if names := [name for name in BOUNDED_COMPONENTS if name in unknown]:
+            raise BoundMissing(
+                f"the uncertainty of the measured value of {self.measured.name} is not complete: "
+                f"{', '.join(names)} not known"
             )
 
     def _grade_limit(self, limit: Limit, doubt: str | None = None) -> Criterion:

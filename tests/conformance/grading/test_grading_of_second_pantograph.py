@@ -12,7 +12,9 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
+from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
 from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty
 from pantocheck.conformance.records.record import Record
@@ -112,3 +114,22 @@ def test_measured_uncertainty_counts(assessed: Callable[..., AssessedRecord], si
     assert (rows[1].verdict, rows[2].verdict) == ("pass", "pass")
     assert rows[1].close == []
     assert ["its uncertainty of 5 N" in remark for remark in rows[2].close] == [True] * close
+
+
+@pytest.mark.parametrize("name", ["sampling", "resolution", "alignment"])
+@pytest.mark.parametrize(("known", "verdict"), [(True, "pass"), (False, "skip")])
+def test_measured_value_of_unknown_error_is_no_centre(
+    assessed: Callable[..., AssessedRecord], name: ComponentName, known: bool, verdict: str
+) -> None:
+    """No value passes with an unknown bounded component; a tolerance around such a value decides nothing either."""
+    subject, measured = assessed(28.5, 38.5, profile="line-test"), assessed(28.0, 38.0, profile="line-test")
+    widths = {1: {"std_force_N": 0.1}, 2: {"std_force_N": 0.1} if known else {}}
+    uncertainty = Uncertainty({name: Component("bounds", widths)}, measured.values.values)
+    results = assess_record(
+        subject, load_profile("line-test"), "provisional", replace(measured, uncertainty=uncertainty)
+    )
+    rows = {row.pantograph: row for row in results.cases[0].criteria if row.quantity == "std_force_N"}
+    assert (rows[1].verdict, rows[2].verdict) == ("pass", verdict)
+    reason = f"the uncertainty of the measured value of {measured.name} is not complete: {name} not known"
+    assert (rows[2].reason, rows[2].value) == (None if known else reason, pytest.approx(38.5, rel=0.01))
+    assert find_discrepancies(results) == []
