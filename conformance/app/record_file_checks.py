@@ -33,11 +33,17 @@ def _check_record(path: Path) -> str:
 
 
 def _describe_clocks(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> Iterator[str]:
-    """State of the clock of each source of uplift."""
+    """State of the clock of each source of uplift; offset, uncertainty and drift of a confirmed one."""
     if samples.sources.uplift:
         placed = _place(samples, sidecar, table)
         train = extend_train(placed.time, placed.position, sidecar.speed_km_h / 3.6)
-        yield from (align_source(source, train).describe() for source in samples.sources.uplift)
+        for source in samples.sources.uplift:
+            alignment = align_source(source, train)
+            clock, text = alignment.clock, alignment.describe()
+            if alignment.state == "confirmed":
+                text += f"; offset {clock.offset:.3f} s, uncertainty {clock.uncertainty:.3f} s"
+                text += f", drift {1e6 * clock.drift:.0f} ppm" if clock.drift else ""
+            yield text
 
 
 def _place(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> PlacedSamples:

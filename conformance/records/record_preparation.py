@@ -27,6 +27,7 @@ from pantocheck.conformance.records.source_alignment import (
     extend_train,
     join_uplift,
     list_drift_warnings,
+    list_short_ends,
 )
 from pantocheck.conformance.records.usable_sections import (
     SHORTEST_S,
@@ -157,6 +158,7 @@ def prepare_record(
     alignments = tuple(align_source(source, train) for source in samples.sources.uplift)
     lines = [join_uplift(line, alignments, train, side) for side in (0, -1, 1)]
     warnings += [part.describe() for part in alignments if part.state != "confirmed"]
+    warnings += list_short_ends(alignments, train, section)
     warnings += list_drift_warnings(samples.sources, alignments)
     mean_speed = float(recorded[-1][steady].mean())
     # A section that nobody stated is the whole track: every record ends at its limits.

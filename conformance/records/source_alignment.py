@@ -171,6 +171,8 @@ def align_source(source: SourceSamples, train: PlacedTrain) -> Alignment:
         times = np.array([(tie.pulse, tie.passing) for tie in seen]).T
         clock = fit_clock(times[0], times[1], scatter, common)
     residuals = [clock.convert(np.array([tie.pulse]))[0] - tie.passing for tie in seen]
+    if source.kind == "passage" and len(seen) == 1:  # the clock was set by this pulse, so that none is left
+        residuals = [clock.uncertainty]
     text = f"{len(seen)} of {len(ties)} passages show a pulse, within {1e3 * max(map(abs, residuals)):.2g} ms"
     return Alignment(source, clock, "confirmed", text, tuple(ties))
 
@@ -242,6 +244,28 @@ def join_uplift(
         last_position=last,
         fault="; ".join(faults) or None,
     )
+
+
+def list_short_ends(alignments: Sequence[Alignment], train: PlacedTrain, section: tuple[float, float]) -> Iterator[str]:
+    """Warnings of sources that cover a support of the section by their clock, but not at either end of its interval."""
+    for part in alignments:
+        source, width = part.source, part.clock.uncertainty
+        time = part.clock.convert(source.time[[0, -1]])
+        gap = GAP_STEPS * float(np.median(np.diff(source.time)))
+        for place in source.supports[supports_inside(source.supports, section)]:
+            needed = (
+                train.find_times(place - UPLIFT_STRETCH_M).min(),
+                train.find_times(place + UPLIFT_STRETCH_M).max(),
+            )
+            for fault, side, spare in (
+                ("begins {} s too late", "before", needed[0] - time[0] + gap),
+                ("ends {} s too soon", "past", time[1] - needed[1] + gap),
+            ):
+                if 0 <= spare < width:
+                    yield (
+                        f"{source.name} {fault.format(f'{width - spare:.2g}')}: the uplift at {place:g} m needs "
+                        f"{UPLIFT_STRETCH_M:g} m {side} the support and the uncertainty of the clock, {width:.2g} s"
+                    )
 
 
 def list_drift_warnings(sources: RecordSources, alignments: Sequence[Alignment]) -> Iterator[str]:

@@ -15,6 +15,7 @@ from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
+from pantocheck.conformance.pages.translation import translate
 from pantocheck.conformance.records.sidecar_tables import LineTable
 
 UPLIFT = "max_uplift_at_support_mm"
@@ -443,3 +444,54 @@ def test_run_of_a_case_needs_one_time(tmp_path: Path) -> None:
     )
     assert done.exit_code == 2
     assert f"sidecar '{sidecar.name}', key source: the record has several clocks" in done.output
+
+
+@pytest.mark.parametrize(
+    ("times", "verdict", "warning"),
+    [
+        # The train is 60 m before the first support at 3.4286 s and 60 m past the last one at 6.8571 s. The clock is
+        # known to 0.05 s, and one and a half steps of 0.005 s are no gap.
+        ((-4.0, 6.88), "undecided", "ends 0.025 s too soon: the uplift at 420 m needs 60 m past the support"),
+        ((3.42, 16.0), "undecided", "begins 0.034 s too late: the uplift at 300 m needs 60 m before the support"),
+        ((-4.0, 6.92), "pass", None),
+        ((3.38, 16.0), "pass", None),
+        ((-4.0, 6.85), "skip", None),  # the support is not covered at all, and its criterion says so
+    ],
+)
+def test_file_that_ends_within_the_uncertainty_of_its_clock_is_named(
+    times: tuple[float, float], verdict: str, warning: str | None, tmp_path: Path
+) -> None:
+    pair = MeasuredPair(1, times=times)
+    result = read_results(pair.write(tmp_path, STATED.replace("0.005", "0.05")))
+    (criterion,) = (row for row in result["criteria"] if row["quantity"] == UPLIFT)
+    found = [text for text in result["warnings"] if text.startswith("mast.csv ")]
+    assert criterion["verdict"] == verdict
+    assert found == ([] if warning is None else [f"mast.csv {warning} and the uncertainty of the clock, 0.05 s"])
+    assert [translate(text, "de").missing for text in found] == [()] * len(found)
+
+
+@pytest.mark.parametrize(
+    ("supports", "drift", "within", "ends"),
+    [
+        # One pulse sets the clock: (1 + 0.5 m) / 70 m/s in common, and twice 0.25 m / 70 m/s.
+        ((360.0,), 0.0, 29, "uncertainty 0.029 s"),
+        ((300.0, 360.0, 420.0), 0.0, None, " s"),
+        ((300.0, 360.0, 420.0, 480.0), 0.02, None, " ppm"),
+    ],
+)
+def test_check_prints_offset_uncertainty_and_drift(
+    supports: tuple[float, ...], drift: float, within: int | None, ends: str, tmp_path: Path
+) -> None:
+    """The report states the same numbers."""
+    pair = MeasuredPair(1, supports=supports, drift=drift, times=(-4.0, 14.0))
+    sidecar = pair.write(tmp_path, PASSAGE)
+    edit_toml(sidecar, {"evaluated_m": [supports[0] - 30, supports[-1] + 30]})
+    text = json.loads(pantocheck("check", sidecar, "--json").stdout)["result"][0]["kind"]
+    (source,) = read_results(sidecar)["sources"]
+    offset, uncertainty = source["offset_s"], source["uncertainty_s"]
+    line = next(line for line in text.splitlines() if "mast.csv" in line)
+    assert f"; offset {offset:.3f} s, uncertainty {uncertainty:.3f} s" in line
+    assert line.endswith(f", drift {source['drift_ppm']:.0f} ppm" if drift else ends)
+    if within is not None:
+        assert f"within {within} ms" in line
+        assert uncertainty == pytest.approx(within / 1e3, abs=5e-4)
