@@ -90,7 +90,12 @@ def _list_section_lines(key: str, text: str, guesses: dict[str, list[ChannelFact
 
 def _find_kilometres(guesses: dict[str, list[ChannelFacts]]) -> ChannelFacts | None:
     """Channel with the kilometres of the line."""
-    return next((fact for fact in guesses.get("position", []) if fact.unit == "km"), None)
+    return next((fact for fact in guesses.get("position", []) if _is_kilometre(fact)), None)
+
+
+def _is_kilometre(fact: ChannelFacts) -> bool:
+    """Whether a column is in kilometres by its unit, or by its name if the file states no unit."""
+    return "km" in (fact.unit, (fact.column.name or "").strip().casefold() if fact.unit is None else None)
 
 
 def _list_source_lines(
@@ -115,6 +120,7 @@ def _list_source_lines(
         f"file = {json.dumps(part.file, ensure_ascii=False)}",
         *(
             f"# join = {text}   # {TO_DO if n == 0 else 'or'} joined by {way}"
+            f"{', within_s below the time between two supports' if way == 'uplift' else ''}"
             for n, (way, text) in enumerate(ways.items())
             if way != "uplift" or "uplift" in guesses
         ),
@@ -154,7 +160,8 @@ def _list_column_lines(
             used.add(id(fact))
             name = CHANNELS[channel].column(number)
             remark = f"   # {TO_DO} with the supports above" if several else ""
-            yield f"{'# ' if several else ''}{_column_line(name, fact, None)}{remark}"
+            unit = "km" if channel == "position" and _is_kilometre(fact) else None
+            yield f"{'# ' if several else ''}{_column_line(name, fact, unit)}{remark}"
     if len(guesses.get("force", [])) > 1:
         yield "# forces of one pantograph (left and right): one [columns.force_1_N] with sum = [...], see"
         yield f"# {DocumentationPage.LOGGER_FILES}"

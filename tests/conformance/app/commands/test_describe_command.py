@@ -68,6 +68,21 @@ def test_facts_and_sidecar_of_a_logger_file(logger: Path) -> None:
         assert values["std_force_N"] == pytest.approx(30 / np.sqrt(2), abs=0.05)
 
 
+def test_column_km_without_a_unit_is_a_kilometre(logger: Path) -> None:
+    text = logger.read_text("cp1252").replace("Kilometer", "km").replace(";s;km;", ";s;;")
+    logger.write_text(text, encoding="cp1252")
+    sidecar = logger.with_suffix(".toml")
+    assert describe(logger, "--sidecar", sidecar).exit_code == 0
+    complete(sidecar, {"speed_km_h": "252.0", "filter_applied_Hz": '"none"', "evaluated_km": "[86.95, 85.87]"})
+    complete(sidecar, {"spacing_m": "[200.0]"})
+    assert 'kilometres = "decreasing"' in sidecar.read_text("utf-8")
+    # The file begins at kilometre 87.25, where x = 0.
+    assert load_assessed_record(sidecar, load_profile("acceptance-ac"), LineTable()).header.evaluated_m == (
+        pytest.approx(300.0, abs=0.01),
+        pytest.approx(1380.0, abs=0.01),
+    )
+
+
 def test_ambiguous_table_names_the_options_and_no_sidecar_is_overwritten(logger: Path, tmp_path: Path) -> None:
     sidecar = logger.with_suffix(".toml")
     sidecar.write_text("mine")
