@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from pantocheck.conformance.comparison.static_record import STATIC_SCHEMA, StaticSidecar, read_static_table
 from pantocheck.conformance.core.measured_table import CSV, TABLE_SUFFIXES
 from pantocheck.conformance.core.texts import count_noun
@@ -13,12 +15,14 @@ from pantocheck.conformance.drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.grading.assessed_record import find_missing_statement
 from pantocheck.conformance.line.support_rows import check_line_table, read_line_tables
 from pantocheck.conformance.pantograph.response_record import RESPONSE_SCHEMA, ResponseSidecar, read_response
+from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.records.column_values import list_sensor_warnings
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, build_record_error, read_samples
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples
-from pantocheck.conformance.records.source_alignment import align_source, extend_train
+from pantocheck.conformance.records.source_alignment import align_source, extend_train, list_sensor_faults
+from pantocheck.conformance.records.uplift_sensor import refuse_faulty_uplift
 from pantocheck.conformance.records.usable_sections import PlacedSamples, place_samples
 
 
@@ -28,22 +32,28 @@ def _check_record(path: Path) -> str:
     content = f"record: {n} samples of {count_noun(rows, 'pantograph')}"
     unused = f"\n  columns that are not used: {', '.join(samples.ignored[:20])}" if samples.ignored else ""
     warnings = "".join(f"\n  warning: {text}" for text in _warn_of_record(samples, sidecar, table))
-    clocks = "".join(f"\n  {text}" for text in _describe_clocks(samples, sidecar, table))
+    clocks = "".join(f"\n  {text}" for text in _describe_uplift(samples, sidecar, table))
     return f"{content} in {table.name}, {sidecar.speed_km_h:g} km/h{clocks}{unused}{warnings}"
 
 
-def _describe_clocks(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> Iterator[str]:
-    """State of the clock of each source of uplift; offset, uncertainty and drift of a confirmed one."""
-    if samples.sources.uplift:
-        placed = _place(samples, sidecar, table)
-        train = extend_train(placed.time, placed.position, sidecar.speed_km_h / 3.6)
-        for source in samples.sources.uplift:
-            alignment = align_source(source, train)
-            clock, text = alignment.clock, alignment.describe()
-            if alignment.state == "confirmed":
-                text += f"; offset {clock.offset:.3f} s, uncertainty {clock.uncertainty:.3f} s"
-                text += f", drift {1e6 * clock.drift:.0f} ppm" if clock.drift else ""
-            yield text
+def _describe_uplift(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> Iterator[str]:
+    """State of the clock of each source of uplift, with the numbers of a confirmed one, and faults of the sensors."""
+    if samples.uplift is None and not samples.sources.uplift:
+        return
+    placed = _place(samples, sidecar, table)
+    train = extend_train(placed.time, placed.position, sidecar.speed_km_h / 3.6)
+    alignments = [align_source(source, train) for source in samples.sources.uplift]
+    for alignment in alignments:
+        clock, text = alignment.clock, alignment.describe()
+        if alignment.state == "confirmed":
+            text += f"; offset {clock.offset:.3f} s, uncertainty {clock.uncertainty:.3f} s"
+            text += f", drift {1e6 * clock.drift:.0f} ppm" if clock.drift else ""
+        yield text
+    faults = [fault for part in alignments for fault in list_sensor_faults(part, train)]
+    everywhere = LineSignals((-np.inf, np.inf), placed.samples.support_position, placed.samples.uplift)
+    if (fault := refuse_faulty_uplift(everywhere, placed.position).fault) is not None:
+        faults.append(fault)
+    yield from (f"warning: `assess` skips the uplift: {fault}" for fault in faults)
 
 
 def _place(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> PlacedSamples:

@@ -29,6 +29,7 @@ from pantocheck.conformance.records.source_alignment import (
     list_drift_warnings,
     list_short_ends,
 )
+from pantocheck.conformance.records.uplift_sensor import refuse_faulty_uplift
 from pantocheck.conformance.records.usable_sections import (
     SHORTEST_S,
     PlacedSamples,
@@ -153,7 +154,7 @@ def prepare_record(
     for row in range(samples.force.shape[0]):
         pantographs[row + 1], remarks = _prepare_pantograph(placed, row, settings)
         warnings += remarks
-    line, remarks = _prepare_line(samples, section, position.min(axis=0))
+    line, remarks = _prepare_line(samples, section, position)
     train = extend_train(time, position, nominal)
     alignments = tuple(align_source(source, train) for source in samples.sources.uplift)
     lines = [join_uplift(line, alignments, train, side) for side in (0, -1, 1)]
@@ -263,13 +264,13 @@ def _outlier_warnings(force: RealArray, position: RealArray, name: str) -> list[
 
 
 def _prepare_line(
-    samples: RecordSamples, section: tuple[float, float], last_position: RealArray
+    samples: RecordSamples, section: tuple[float, float], position: RealArray
 ) -> tuple[LineSignals, list[str]]:
     """Uplift of the supports where no value that counts is missing, and warnings."""
     uplift = samples.uplift
     if uplift is None or samples.support_position is None:
         return LineSignals(section), []
-    missing = ~np.isfinite(uplift)
+    missing, last_position = ~np.isfinite(uplift), position.min(axis=0)
     warnings = []
     if missing.any():
         warnings.append(
@@ -278,7 +279,8 @@ def _prepare_line(
         )
     complete = ~has_gaps(samples.support_position, uplift, last_position)
     supports = samples.support_position[complete]
-    return LineSignals(section, supports, uplift[complete], last_position=last_position), warnings
+    line = LineSignals(section, supports, uplift[complete], last_position=last_position)
+    return refuse_faulty_uplift(line, position), warnings
 
 
 def _ignored_notes(samples: RecordSamples) -> list[str]:

@@ -10,6 +10,7 @@ from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import Stretch, evaluate_outside_overlaps
 from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.uplift_sensor import refuse_faulty_uplift
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,12 @@ class RecordSignals(SectionEvaluations):
 
     @cached_property
     def line(self) -> LineSignals:
-        """Uplift at the supports."""
+        """Uplift at the supports; of a sensor with a fault, none counts."""
+        return refuse_faulty_uplift(self.delivered_line, self.record.position)
+
+    @cached_property
+    def delivered_line(self) -> LineSignals:
+        """Uplift at the supports as delivered, for the checks of its passages."""
         record = self.record
         return LineSignals(
             record.evaluated,

@@ -22,6 +22,7 @@ from pantocheck.conformance.quantities.line_signals import (
 )
 from pantocheck.conformance.records.clock_join import PULSE_LENGTH_M, SMALLEST_MATCH, Clock, Passages, fit_clock
 from pantocheck.conformance.records.record import ChannelRows
+from pantocheck.conformance.records.uplift_sensor import find_inversion, find_uplift_fault
 
 PULSE_SHIFT_M = 1.0
 """Largest distance of a pulse from its support in the simulated passages of the library [m]."""
@@ -118,6 +119,13 @@ class PlacedTrain:
     speed: float
     """Speed of the train [m/s]."""
 
+    def place_ends(self, time: RealArray) -> tuple[RealArray, RealArray]:
+        """Positions of the first and the last pantograph, (n,) [m] each, at constant speed before and behind it."""
+        beyond = self.speed * (time - np.clip(time, self.time[0], self.time[-1]))
+        ends = self.position.max(axis=0), self.position.min(axis=0)
+        first, last = (np.interp(time, self.time, row) + beyond for row in ends)
+        return first, last
+
     def find_times(self, place: float) -> RealArray:
         """Times at which the pantographs pass a place, (p,) [s]; NaN where they do not."""
         return np.array([np.interp(place, row, self.time, left=np.nan, right=np.nan) for row in self.position])
@@ -173,6 +181,11 @@ def align_source(source: SourceSamples, train: PlacedTrain) -> Alignment:
     residuals = [clock.convert(np.array([tie.pulse]))[0] - tie.passing for tie in seen]
     if source.kind == "passage" and len(seen) == 1:  # the clock was set by this pulse, so that none is left
         residuals = [clock.uncertainty]
+    first, last = train.place_ends(clock.convert(source.time))
+    rows = zip(source.supports, source.uplift, strict=True)
+    inverted = [text for place, row in rows if (text := find_inversion(float(place), row, first, last)) is not None]
+    if inverted:
+        return Alignment(source, clock, "unconfirmed", "; ".join(inverted), tuple(ties))
     text = f"{len(seen)} of {len(ties)} passages show a pulse, within {1e3 * max(map(abs, residuals)):.2g} ms"
     return Alignment(source, clock, "confirmed", text, tuple(ties))
 
@@ -235,8 +248,10 @@ def join_uplift(
             rows.append((float(place), uplift, line.last_position))
     rows.sort(key=lambda row: row[0])
     uplift, last = stack_supports([row[1:] for row in rows])
-    wrong = [part for part in alignments if part.state != "confirmed"]
-    faults = [part.describe() for part in wrong if supports_inside(part.source.supports, line.section).any()]
+    used = [part for part in alignments if supports_inside(part.source.supports, line.section).any()]
+    faults = [] if line.fault is None else [line.fault]
+    faults += [part.describe() for part in used if part.state != "confirmed"]
+    faults += [text for part in used for text in list_sensor_faults(part, train, line.section)]
     return replace(
         line,
         support_position=np.array([row[0] for row in rows]),
@@ -266,6 +281,20 @@ def list_short_ends(alignments: Sequence[Alignment], train: PlacedTrain, section
                         f"{source.name} {fault.format(f'{width - spare:.2g}')}: the uplift at {place:g} m needs "
                         f"{UPLIFT_STRETCH_M:g} m {side} the support and the uncertainty of the clock, {width:.2g} s"
                     )
+
+
+def list_sensor_faults(
+    alignment: Alignment, train: PlacedTrain, section: tuple[float, float] = (-np.inf, np.inf)
+) -> Iterator[str]:
+    """Faults of the sensors of a source at the supports of a section [m], by a clock that is stated or confirmed."""
+    source = alignment.source
+    usable = alignment.state == "confirmed" or (alignment.state == "unconfirmed" and source.kind != "passage")
+    first, last = train.place_ends(alignment.clock.convert(source.time))
+    inside = supports_inside(source.supports, section) & usable
+    for place, row in zip(source.supports[inside], source.uplift[inside], strict=True):
+        fault = find_uplift_fault(float(place), row, first, last)
+        if fault is not None and fault not in alignment.finding:
+            yield f"{source.name}: {fault}"
 
 
 def list_drift_warnings(sources: RecordSources, alignments: Sequence[Alignment]) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """Reading of the further sources of a record: their channels, and the ties of their clocks to that of the record."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -65,6 +65,7 @@ def read_sources(sidecar_path: Path, sidecar: RecordSidecar, table: MeasuredTabl
         found = "needs the time of the first file, which has none"
         raise InputError(f"sidecar '{sidecar_path.name}', key source", found, "Name its column: time_s in [columns].")
     uplift, added, clocks, taken = list[SourceSamples](), ChannelRows(), list[tuple[str, str, Clock]](), dict(rows)
+    uplifts = {CHANNELS["uplift"].column(k): (table.source, row) for k, row in rows.get("uplift", {}).items()}
     for number, source in enumerate(sidecar.source, 1):
         where = f"sidecar '{sidecar_path.name}', source[{number}]"
         repeated = sum(other.file == source.file for other in (sidecar, *sidecar.source)) > 1
@@ -85,6 +86,9 @@ def read_sources(sidecar_path: Path, sidecar: RecordSidecar, table: MeasuredTabl
             places = np.array([(sidecar.support_position_m or ())[k - 1] for k in sorted(own["uplift"])])
             values = np.vstack([own["uplift"][k] for k in sorted(own["uplift"])])
             uplift.append(SourceSamples(name, source.join.kind, time, places, values, clock))
+            columns = {CHANNELS["uplift"].column(k): (name, row) for k, row in sorted(own["uplift"].items())}
+            _refuse_copies(columns, uplifts, where)
+            uplifts |= columns
         if "force" in own:
             _check_rate(time, rows["time"][1], where, name)
         for channel, longest_s in LONGEST_GAPS_S.items():
@@ -108,6 +112,19 @@ def _check_channels(own: ChannelRows, taken: ChannelRows, where: str, name: str)
             raise InputError(f"{where}, {name}", f"repeats the channel {column} of another source", "Name it once.")
     if not own.keys() - {"time"}:
         raise InputError(f"{where}, {name}", "has no channel beside the time", "Name its columns in [source.columns].")
+
+
+def _refuse_copies(
+    own: Mapping[str, tuple[str, RealArray]], others: Mapping[str, tuple[str, RealArray]], where: str
+) -> None:
+    """Refuse an uplift with the samples of another support; both by column, with the name of the source."""
+    seen = dict(others)
+    for column, (name, values) in own.items():
+        for other, (file, known) in seen.items():
+            if np.array_equal(values, known, equal_nan=True) and np.unique(values[np.isfinite(values)]).size > 1:
+                found = f"{column} of {name} has the same samples as {other} of {file}, at another support"
+                raise InputError(where, found, "Name the file and column that was recorded at each support.")
+        seen[column] = name, values
 
 
 def _find_time(own: ChannelRows, where: str, name: str) -> tuple[RealArray, RealArray]:

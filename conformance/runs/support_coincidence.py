@@ -72,7 +72,7 @@ class _Passages:
 def _check_coincidence(case: Case, signals: RecordSignals) -> Finding:
     record = signals.record
     try:
-        uplift = signals.line.uplift
+        uplift = signals.delivered_line.uplift
     except QuantityUnavailable:
         return NAMED_ELSEWHERE  # by the support passing
     if record.contact_height is None:
@@ -83,7 +83,7 @@ def _check_coincidence(case: Case, signals: RecordSignals) -> Finding:
         text = f"steps of {1e3 * step:.2g} mm are too coarse; deliver both to 0.1 mm"
         return report_missing(f"contact height against uplift: {text}")
     passages = {number: _find_passages(case, signals, number) for number in signals.pantographs}
-    rows = zip(signals.line.supports, uplift, strict=True)
+    rows = zip(signals.delivered_line.supports, uplift, strict=True)
     findings: list[Finding | None] = [_find_hold(case, signals, float(support), row) for support, row in rows]
     findings += [_compare_supports(number, passed) for number, passed in passages.items()]
     findings += [_compare_datums(case, passages), _compare_gain(passages, step)]
@@ -91,7 +91,7 @@ def _check_coincidence(case: Case, signals: RecordSignals) -> Finding:
 
 
 def _find_passages(case: Case, signals: RecordSignals, number: int) -> _Passages:
-    record, line = signals.record, signals.line
+    record, line = signals.record, signals.delivered_line
     assert record.contact_height is not None
     wire = case.line.contact_wire
     position, force = record.position[number - 1], record.force[number - 1]

@@ -119,7 +119,8 @@ class _Passages:
 
     def __init__(self, case: Case, signals: RecordSignals) -> None:
         self._case, self._signals = case, signals
-        self._supports, self._uplift = signals.line.supports, signals.line.uplift
+        line = signals.delivered_line
+        self._supports, self._uplift = line.supports, line.uplift
         self.length = max(KINK_LENGTH_M, 2 * signals.record.speed / signals.record.rate)
         steps = round(LARGEST_SHIFT_SPANS * case.line.geometry.longest_span / SHIFT_STEP_M)
         self.shifts = SHIFT_STEP_M * np.arange(-steps, steps + 1)

@@ -263,7 +263,7 @@ def test_whole_section_must_be_covered(section: tuple[float, float], covered: bo
 
 def test_support_with_missing_uplift_is_not_evaluated() -> None:
     samples = by_time()
-    uplift = np.full((2, samples.time.size), 0.03)
+    uplift = np.zeros((2, samples.time.size))
     uplift[0, 150] = 0.05
     uplift[1, 150] = np.nan  # may have been the largest
     lines = RecordSamples(samples.force, samples.time, None, samples.position, None, uplift, np.array([300.0, 360.0]))

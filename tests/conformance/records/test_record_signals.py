@@ -1,5 +1,6 @@
 """Quantities of a record: values computed by hand, and a reason for each quantity that is not available."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -7,12 +8,14 @@ import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import ArrayLike
 
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_signals import evaluate_record
+from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
 
 RATE, SPEED = 1000.0, 50.0
 
@@ -169,3 +172,24 @@ def test_registry_has_every_name_of_the_contract() -> None:
         name == quantity.name and quantity.label and quantity.definition and quantity.needs.text and quantity.source
         for name, quantity in QUANTITIES.items()
     )
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda u: -u, "falls by 50 mm"),
+        (lambda u: u + 0.01, "is 10 mm at rest"),
+        (lambda u: np.minimum(u, 0.03), "flat"),
+    ],
+)
+def test_uplift_of_a_faulty_sensor_has_no_value(change: Callable[[RealArray], RealArray], reason: str) -> None:
+    """In a record of one file, such as that of a case; the checks of the passages still see the uplift."""
+    uplift = np.round(0.05 * np.exp(-np.abs(SPEED * np.arange(12_000) / RATE - 300) / 12), 6)
+    signals = [
+        RecordSignals(record(support_position=np.array([300.0]), support_uplift=row[None]), Filter())
+        for row in (uplift, change(uplift))
+    ]
+    assert signals[0].line.largest_uplift == 0.05
+    with pytest.raises(QuantityUnavailable, match=reason):
+        signals[1].line.largest_uplift  # noqa: B018 - raises
+    assert_allclose(signals[1].delivered_line.uplift[0], change(uplift))

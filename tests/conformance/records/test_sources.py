@@ -264,6 +264,94 @@ def test_uncertain_clock_leaves_an_uplift_near_its_space_undecided(tmp_path: Pat
     assert criterion["components"]["alignment"] == pytest.approx(55 - criterion["value"], abs=1e-6)
 
 
+# Sensors with a fault.
+def change_mast(sidecar: Path, change: Callable[[np.ndarray], np.ndarray], pair: MeasuredPair | None = None) -> None:
+    """Change the uplift of the second mast [mm]."""
+    table = (pair or MeasuredPair()).masts()
+    table[:, 2] = change(table[:, 2])
+    names = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))]
+    write_german(sidecar.parent / "mast.csv", names, table)
+
+
+FAULTS: dict[str, tuple[Callable[[np.ndarray], np.ndarray], str]] = {
+    "inverted": (np.negative, "the uplift at 360 m falls by 5"),
+    "overloaded": (lambda uplift: np.minimum(uplift, 30.0), "the uplift at 360 m is flat at its largest value, 30 mm"),
+    "zero error": (lambda uplift: uplift - 20.0, "the uplift at 360 m is -20 mm at rest, before the passage"),
+    "zero error of 3 mm": (lambda uplift: uplift + 3.0, "mm at rest, before the passage, and not 0 within 2 mm"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize("files", [1, 2])
+def test_faulty_sensor_of_one_mast_is_named_and_not_graded(fault: str, files: int, tmp_path: Path) -> None:
+    """Of a source, and of the uplift in the file of the force."""
+    change, reason = FAULTS[fault]
+    sidecar = MeasuredPair().write(tmp_path, STATED)
+    change_mast(sidecar, change)
+    if files == 1:
+        train, masts = (
+            MeasuredPair().train(),
+            np.loadtxt(
+                tmp_path / "mast.csv", delimiter=";", skiprows=1, converters=lambda text: float(text.replace(",", "."))
+            ),
+        )
+        columns = [np.interp(train[:, 0], masts[:, 0] + 3.217, column) for column in masts[:, 1:].T]
+        if fault == "overloaded":
+            columns[1] = np.minimum(columns[1], 30.0)
+        names = ["Zeit [s]", "Weg [m]", "Kraft 1 [N]", "Kraft 2 [N]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))]
+        write_german(tmp_path / "zug.csv", names, np.column_stack([train, *columns]))
+        uplifts = {f"columns.uplift_{n}_m": {"column": f"Anhub Mast {n} [mm]"} for n in (1, 2, 3)}
+        edit_toml(sidecar, {"source": None, **uplifts})
+    result = read_results(sidecar)
+    assert result["verdict"] == "skip"
+    assert reason in result["skipped"]["0"][UPLIFT]
+    assert reason in " ".join(pantocheck("check", sidecar, COLUMNS="400").output.split())
+
+
+@pytest.mark.parametrize("step", [0.1, 0.5, 1.0, 2.0])
+@pytest.mark.parametrize("rate", [200.0, 1000.0, 5000.0])
+def test_rounded_uplift_is_neither_overloaded_nor_off_zero(step: float, rate: float, tmp_path: Path) -> None:
+    """A sensor in whole steps holds its largest value at a smooth maximum, and 1 mm are within the zero."""
+    pair = MeasuredPair(noise=0.0, rate=rate)
+    sidecar = pair.write(tmp_path, STATED)
+    for smooth in (False, True):
+        place = SPEED * np.arange(*pair.times, 1 / rate) - 360
+        hump = 55 * np.exp(-((place / 15) ** 2)) if smooth else 0.0
+        change_mast(sidecar, lambda uplift, hump=hump: np.round((uplift + hump) / step) * step, pair)
+        assert "skips the uplift" not in " ".join(pantocheck("check", sidecar, COLUMNS="400").output.split())
+    change_mast(sidecar, lambda uplift: uplift + 1.0, pair)
+    assert read_results(sidecar)["verdict"] == "pass"
+
+
+def test_zero_error_is_not_claimed_without_a_rest(tmp_path: Path) -> None:
+    """The file of the masts begins 85 m before the first support: 145 m before the second one."""
+    pair = MeasuredPair(1, times=(215 / SPEED, 16.0))
+    sidecar = pair.write(tmp_path, STATED)
+    edit_toml(sidecar, {"evaluated_m": [300.0, 350.0], "source.0.columns.uplift_2_m": None,
+                        "source.0.columns.uplift_3_m": None, "support_position_m": [300.0]})  # fmt: skip
+    table = pair.masts()
+    table[:, 1] -= 3.0
+    write_german(tmp_path / "mast.csv", ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))], table)
+    assert read_results(sidecar)["verdict"] == "pass"
+
+
+@pytest.mark.parametrize("copy", ["same column", "copied file"])
+def test_mast_of_one_support_cannot_stand_for_another(copy: str, tmp_path: Path) -> None:
+    sidecar = MeasuredPair().write(tmp_path, STATED)
+    (tmp_path / "copy.csv").write_bytes((tmp_path / "mast.csv").read_bytes())
+    column, time = {"column": "Anhub Mast 1 [mm]"}, {"column": "Uhrzeit [s]"}
+    join = {"kind": "time", "offset_s": 3.217, "uncertainty_s": 0.005}
+    if copy == "same column":
+        changes, names = {"source.0.columns.uplift_2_m": column}, ("mast.csv", "mast.csv")
+    else:
+        source = {"file": "copy.csv", "join": join, "columns": {"time_s": time, "uplift_2_m": column}}
+        changes, names = {"source.0.columns.uplift_2_m": None, "source.1": source}, ("copy.csv", "mast.csv")
+    done = pantocheck("check", edit_toml(sidecar, changes), COLUMNS="400")
+    assert done.exit_code == 2
+    text = f"uplift_2_m of {names[0]} has the same samples as uplift_1_m of {names[1]}, at another support"
+    assert text in " ".join(done.output.split())
+
+
 # Position from another file.
 def write_position(folder: Path, join: str, clock: Callable[[np.ndarray], np.ndarray]) -> Path:
     """Position and speed in a file of 10 Hz, with a time of its own."""
