@@ -33,6 +33,8 @@ class ExploredValue(ResultsPart):
     """Value of a passage beside the limits that the case has for its own inputs."""
 
     quantity: str
+    label: str
+    """Name of the quantity in words."""
     unit: str
     pantograph: int
     """Number of the pantograph, 0: the line."""

@@ -26,10 +26,11 @@ class Control {
     this.range = element("input", { type: "range", "aria-label": `${label} [${unit}]`, ...ends });
     this.number = element("input", { type: "number", "aria-label": `${label} [${unit}], exact`, min: low, max: high, step: "any" });
     this.range.addEventListener("input", () => this.take(this.valueAt(Number(this.range.value)), act));
-    this.number.addEventListener("input", () => this.take(Number(this.number.value), act, this.number));
+    this.number.addEventListener("input", () => this.take(this.number.valueAsNumber, act, this.number));
+    this.problem = element("span", { class: "problem", role: "alert" });
     const marks = element("span", { class: "ends", "aria-hidden": "true" }, element("span", {}, formatNumber(low, 6)), element("span", {}, formatNumber(high, 6)));
     const field = element("span", { class: "exact" }, this.number, ` ${unit}`);
-    this.element = element("div", { class: "control" }, element("span", { class: "name" }, label), field, this.range, marks);
+    this.element = element("div", { class: "control" }, element("span", { class: "name" }, label), field, this.problem, this.range, marks);
     this.take(slider.value, () => {});
   }
 
@@ -48,8 +49,12 @@ class Control {
   take(value, act, source) {
     this.value = value;
     const { slider } = this;
+    this.isRefused = !(value >= slider.low && value <= slider.high);
+    const stretch = `${formatNumber(slider.low, 6)} to ${formatNumber(slider.high, 6)} ${slider.unit}`;
+    this.problem.textContent = this.isRefused ? `${Number.isNaN(value) ? "No number" : "Outside of the range"}. Choose ${stretch}.` : "";
+    this.number.setAttribute("aria-invalid", String(this.isRefused));
     if (source !== this.number) this.number.value = value;
-    if (source || act) this.range.value = this.positionAt(value);
+    if (!this.isRefused) this.range.value = this.positionAt(value);
     this.range.setAttribute("aria-valuetext", `${formatNumber(value, 6)} ${slider.unit}`);
     this.element.classList.toggle("changed", value !== slider.value);
     act();
@@ -74,6 +79,11 @@ class Controls {
     });
     this.tools = [reset];
     this.element = element("div", { class: "controls", role: "group", "aria-label": "Inputs" }, ...this.controls.map((control) => control.element));
+  }
+
+  /** Whether a field has no number of its range. */
+  get isRefused() {
+    return this.controls.some((control) => control.isRefused);
   }
 
   /** Values of the sliders that do not stand at those of the case. */

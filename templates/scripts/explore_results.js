@@ -12,8 +12,14 @@ function openPart(anchor) {
 }
 
 /** Name of a value with its pantograph. */
-function nameValue({ quantity, pantograph }) {
-  return pantograph > 1 || (pantograph === 1 && results.cases[0].run.count > 1) ? `${quantity}, pantograph ${pantograph}` : quantity;
+function nameValue({ label, pantograph }) {
+  return pantograph > 1 || (pantograph === 1 && results.cases[0].run.count > 1) ? `${label}, pantograph ${pantograph}` : label;
+}
+
+/** Inputs of a setting that differ from those of the case. */
+function describeInputs({ values }) {
+  const changed = results.sliders.filter(({ id }) => id in values);
+  return changed.map(({ id, label, unit }) => `${label} ${formatNumber(values[id], 6)} ${unit}`).join(", ") || "inputs of the case";
 }
 
 /** Limits of a value in words. */
@@ -31,10 +37,11 @@ function describeChange(first, second, unit) {
   return `${sign}${formatNumber(Math.abs(isShare ? 100 * (first / second - 1) : first - second), 3)} ${isShare ? "%" : unit === "%" ? "points" : unit}`;
 }
 
-/** Cell of a value: the number, and whether it lies inside its limits. */
+/** Cell of a value: the number, and whether it lies inside, below or above its limits. */
 function valueCell(label, row) {
   const number = element("data", { value: row.value ?? "" }, formatNumber(row.value));
-  const state = row.is_inside === null ? [] : [" ", element("span", { class: row.is_inside ? "inside" : "outside" }, row.is_inside ? "inside" : "outside")];
+  const side = row.is_inside ? "inside" : row.lower !== null && row.value < row.lower ? "below" : "above";
+  const state = row.is_inside === null ? [] : [" ", element("span", { class: row.is_inside ? "inside" : `outside ${side}` }, side)];
   return element("td", { role: "cell", class: "number", "data-label": label }, element("span", {}, number, ...state));
 }
 
@@ -42,7 +49,8 @@ function valueCell(label, row) {
 function makeValueTable(settings) {
   const names = settings.map((_, i) => `setting ${i + 1}`);
   const headings = ["value", "limits", ...names, ...(settings.length > 1 ? ["1 against 2"] : [])];
-  const head = element("tr", { role: "row" }, ...headings.map((text, i) => element("th", { role: "columnheader", scope: "col", ...(i ? { class: "number" } : {}) }, text)));
+  const inputs = (text) => (names.includes(text) ? [element("small", {}, describeInputs(settings[names.indexOf(text)]))] : []);
+  const head = element("tr", { role: "row" }, ...headings.map((text, i) => element("th", { role: "columnheader", scope: "col", ...(i ? { class: "number" } : {}) }, text, ...inputs(text))));
   const rows = settings[0].criteria.map((row) => {
     const others = settings.map(({ criteria }) => criteria.find(({ quantity, pantograph }) => quantity === row.quantity && pantograph === row.pantograph));
     const cells = others.map((other, i) => (other ? valueCell(names[i], other) : element("td", { role: "cell", "data-label": names[i] }, "–")));
@@ -50,7 +58,7 @@ function makeValueTable(settings) {
       const [one, two] = others.map((other) => other?.value);
       cells.push(element("td", { role: "cell", class: "number", "data-label": "1 against 2" }, describeChange(one, two, row.unit)));
     }
-    const name = element("th", { role: "rowheader", scope: "row" }, `${nameValue(row)} [${row.unit}]`);
+    const name = element("th", { role: "rowheader", scope: "row", title: row.quantity }, `${nameValue(row)} [${row.unit}]`);
     return element("tr", { role: "row" }, name, element("td", { role: "cell", class: "number", "data-label": "limits" }, describeLimits(row)), ...cells);
   });
   const label = "Values beside the limits that the case has for its own inputs";
@@ -58,10 +66,10 @@ function makeValueTable(settings) {
   return element("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": label }, table);
 }
 
-/** Bars of the bands of one pantograph. */
+/** Bars of the bands of one pantograph, with one scale for all pantographs and settings. */
 function makeBars(settings, owner) {
   const find = ({ criteria }, name) => criteria.find(({ quantity, pantograph }) => quantity === name && pantograph === owner)?.value ?? 0;
-  const highest = Math.max(...settings.flatMap((setting) => Object.keys(BANDS).map((name) => find(setting, name))));
+  const highest = Math.max(...settings.flatMap(({ criteria }) => criteria.filter(({ quantity }) => quantity in BANDS).map(({ value }) => value ?? 0)));
   const rows = Object.entries(BANDS).map(([name, text]) => {
     const bars = settings.map((setting, i) => {
       const bar = element("div", { class: `bar setting-${i + 1}` });
@@ -125,18 +133,41 @@ class PicturePart {
   async show(number) {
     const shown = results.cases[number];
     if (!shown?.motion) return this.remove(number);
-    this.views[number]?.figure.classList.remove("outdated");
-    if (this.views[number]) return this.views[number].change(caseOf(this.views[number].figure));
+    const made = this.views[number];
+    const view = made ?? this.make(number);
+    view.figure.classList.remove("outdated");
+    const move = number ? " “Smallest force” of one picture moves the other to the same place of the first pantograph." : "";
+    view.caption.textContent = `Setting ${number + 1}: ${describeInputs(shown)}. An illustration, no value follows from it.${move}`;
+    await (made ? view.change(caseOf(view.figure)) : view.draw());
+    if (!made && number) {
+      view.followed.value = this.views[0].followed.value;
+      view.pause(this.views[0].time);
+    }
+    this.compare();
+  }
+
+  /** Add a view of a setting. */
+  make(number) {
     const figure = makeFigure(number);
     const view = new PassageView(figure);
-    figure.append(element("div", { class: "tools" }, ...view.tools), element("div", { class: "view" }, ...view.parts));
-    figure.append(element("figcaption", {}, `Setting ${number + 1}: an illustration, no value follows from it.`));
+    view.caption = element("figcaption", {});
+    view.onSmallest = (owner) => {
+      for (const other of this.views.filter((one) => one && one !== view)) {
+        other.followed.value = owner;
+        other.pause(alignTime(other.scene.passage, view.scene.passage, view.time));
+      }
+    };
+    figure.append(element("div", { class: "tools" }, ...view.tools), element("div", { class: "view" }, ...view.parts), view.caption);
     this.views[number] = view;
     this.part.append(figure);
-    await view.draw();
-    if (!number) return;
-    view.followed.value = this.views[0].followed.value;
-    view.pause(this.views[0].time);
+    return view;
+  }
+
+  /** Give the signals of all pictures common axes. */
+  compare() {
+    const views = this.views.filter((view) => view?.scene);
+    shareRanges(views.map(({ scene }) => scene));
+    for (const view of views) view.fit();
   }
 
   /** Mark the picture of an earlier setting until that of the present one is there. */
@@ -149,5 +180,6 @@ class PicturePart {
     this.views[number]?.setPlaying(false);
     this.views[number]?.figure.remove();
     this.views[number] = undefined;
+    this.compare();
   }
 }

@@ -14,13 +14,16 @@ class Explorer {
     this.controls = new Controls(results.sliders, () => this.run());
     this.status = element("p", { class: "readout", role: "status" });
     this.command = element("code", {});
+    this.inputs = element("div", { class: "small" });
     this.keep = element("button", { type: "button" }, "Keep as setting 2");
     this.keep.addEventListener("click", () => this.keepSetting());
     this.drop = element("button", { type: "button", hidden: "" }, "Remove setting 2");
     this.drop.addEventListener("click", () => this.dropSetting());
     const tools = element("div", { class: "tools" }, ...this.controls.tools, this.keep, this.drop);
-    openPart("inputs").append(this.controls.element, tools, this.status, element("p", { class: "small" }, "The same inputs, graded: ", this.command));
+    openPart("inputs").append(this.controls.element, tools, this.status, this.inputs, element("p", { class: "small" }, "The same inputs, graded: ", this.command));
     [this.values, this.bands] = ["values", "bands"].map(openPart);
+    this.note = element("p", { class: "problem", hidden: "" }, "Outdated: the values are those of the last setting that was simulated.");
+    this.values.before(this.note);
     [this.forces, this.pictures] = [new ForcePart(), new PicturePart()];
     openPart("save").append(...(results.can_save ? this.makeForms() : ["Start the command with --out FOLDER to save settings."]));
   }
@@ -38,13 +41,16 @@ class Explorer {
     clearTimeout(this.next);
     this.next = undefined;
     this.request?.abort();
+    this.markOutdated(this.controls.isRefused);
+    if (this.controls.isRefused) return this.end("A field has no number of its range.");
     this.request = new AbortController();
     const { signal } = this.request;
     [this.isSimulating, this.begun] = [true, performance.now()];
     this.status.textContent = `Simulating … ${results.cases.length ? "" : results.waiting}`;
     document.body.setAttribute("aria-busy", "true");
     try {
-      const passage = await ask("/simulate", { values: this.controls.values }, signal);
+      const { values } = this.controls;
+      const passage = { ...(await ask("/simulate", { values }, signal)), values };
       this.isSimulating = false;
       this.show(passage);
       if (this.next) return this.start();
@@ -57,11 +63,24 @@ class Explorer {
       if (error.name === "AbortError" || error.isReplaced) return undefined;
       this.isSimulating = false;
       if (this.next) return this.start();
-      const kept = results.cases.length ? " The page shows the last setting that was simulated." : "";
-      this.status.textContent = `${error.message}${kept}`;
+      this.markOutdated(true);
+      return this.end(error.message);
     }
+    return this.end(this.status.textContent);
+  }
+
+  /** End the work for a setting with a text; values of an earlier setting are named so. */
+  end(text) {
+    this.isSimulating = false;
+    this.status.textContent = this.isOutdated ? `${text} The page shows the last setting that was simulated.` : text;
     document.body.removeAttribute("aria-busy");
-    return undefined;
+  }
+
+  /** Mark values, curves and pictures as those of an earlier setting, or not. */
+  markOutdated(outdated) {
+    this.isOutdated = outdated && results.cases.length > 0;
+    this.note.hidden = !this.isOutdated;
+    for (const part of [this.values, this.bands, this.forces.part, this.pictures.part]) part.classList.toggle("outdated", this.isOutdated);
   }
 
   /** Number of values outside of their limits, in words. */
@@ -85,6 +104,7 @@ class Explorer {
     const [shown, kept] = results.cases;
     shown.reference = layOver(shown, kept);
     const settings = kept ? [shown, kept] : [shown];
+    this.inputs.replaceChildren(...settings.map((setting, i) => element("div", {}, `Setting ${i + 1}: ${describeInputs(setting)}`)));
     this.values.replaceChildren(makeValueTable(settings));
     const owners = Object.keys(shown.traces);
     const captions = owners.length > 1 ? owners.map((owner) => element("p", {}, `Pantograph ${owner}`)) : [];

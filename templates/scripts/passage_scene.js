@@ -43,6 +43,12 @@ class PassageScene {
     this.height = top + 12;
     this.masses = Math.max(2, ...passage.pantographs.map(({ height }) => height.columns));
     this.layer = element("canvas");
+    const inside = ({ x, y }) => Array.from(y).filter((_, i) => x[i] >= this.times[0] && x[i] <= this.times[1]);
+    for (const signal of this.signals) {
+      const values = [...signal.curves.flatMap(inside), ...signal.levels.flatMap(({ lower, upper }) => [lower, upper])];
+      signal.ends = [Math.min(...values), Math.max(...values)];
+      signal.range = findRange(signal.ends);
+    }
   }
 
   /** Fit the canvas to a width [px]. */
@@ -327,8 +333,6 @@ class PassageScene {
   /** Curves of one panel with its levels and scale. */
   drawSignal(signal) {
     const { top, height } = this.panels[signal.key];
-    const inside = ({ x, y }) => Array.from(y).filter((_, i) => x[i] >= this.times[0] && x[i] <= this.times[1]);
-    signal.range ??= findRange([...signal.curves.flatMap(inside), ...signal.levels.flatMap(({ lower, upper }) => [lower, upper])]);
     const [low, high] = signal.range;
     const at = (value) => top + height - ((value - low) / (high - low)) * height;
     this.write(signal.label, LEFT, top - 6, "soft");

@@ -63,6 +63,12 @@ function findRange(values) {
   return [Math.floor(low / step) * step, Math.ceil(high / step) * step || step];
 }
 
+/** Give signals of the same kind common axes in all scenes. */
+function shareRanges(scenes) {
+  const signals = scenes.flatMap((scene) => scene.signals);
+  for (const signal of signals) signal.range = findRange(signals.filter(({ key }) => key === signal.key).flatMap(({ ends }) => ends));
+}
+
 /** A step of 1, 2 or 5 times a power of ten that is not below a length. */
 function niceStep(length) {
   const power = 10 ** Math.floor(Math.log10(length));

@@ -95,8 +95,12 @@ class PassageView {
     if (shown === this.case) this.scene = new PassageScene(this.canvas, shown, passage, others);
   }
 
-  /** Decode the picture, draw its first instant and bind keys and pointers. */
-  async draw() {
+  /** Decode the picture once, draw its first instant and bind keys and pointers. */
+  draw() {
+    return (this.drawn ??= this.begin());
+  }
+
+  async begin() {
     this.plot.canvas = this.canvas;
     await this.decode();
     new ResizeObserver(() => this.fit()).observe(this.area);
@@ -218,7 +222,8 @@ class PassageView {
   }
 
   /** Go to the smallest force up to 20 Hz in the analysis section, close to its pantograph. */
-  showSmallest() {
+  async showSmallest() {
+    await this.draw();
     const [low, high] = this.case.run.evaluated_m ?? [-Infinity, Infinity];
     let smallest = { force: Infinity };
     this.scene.passage.pantographs.forEach((part, i) => {
@@ -230,6 +235,7 @@ class PassageView {
     });
     this.followed.value = smallest.owner;
     this.pause(smallest.time);
+    this.onSmallest?.(smallest.owner);
   }
 
   /** Put the instant into the address of the page. */

@@ -23,6 +23,17 @@ pytestmark = pytest.mark.thorough
 
 CASE = "en50318-2002/250"
 
+RECORD_AXES = """() => {
+  window.axes = new Map();
+  const write = CanvasRenderingContext2D.prototype.fillText;
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...place) {
+    const { canvas, textAlign } = this;
+    if (textAlign === "right" && !canvas.isConnected) axes.set(canvas, [...(axes.get(canvas) ?? []), text]);
+    return write.call(this, text, ...place);
+  };
+}"""
+"""Script that records the numbers at the axes of the signals, which are drawn on a layer of each picture."""
+
 
 @pytest.fixture
 def server(tmp_path: Path) -> Iterator[ExploreServer]:
@@ -66,14 +77,11 @@ def change(page: Any, label: str, value: float) -> None:
 
 
 def read_values(page: Any, column: int) -> dict[str, str]:
-    """Numbers of a column of the table of values, with all their digits, by the name of the row."""
+    """Numbers of a column of the table of values, with all their digits, by the quantity of the row."""
     rows = page.locator("section:has(#values) tbody tr")
     return {
-        rows.nth(i).locator("th").inner_text().split(" ")[0]: rows.nth(i)
-        .locator("data")
-        .nth(column)
-        .get_attribute("value")
-        for i in range(rows.count())
+        row.locator("th").get_attribute("title"): row.locator("data").nth(column).get_attribute("value")
+        for row in rows.all()
     }
 
 
@@ -106,6 +114,9 @@ def test_speed_slider_redraws_and_shows_the_values_of_the_simulator(page: Any, t
     assert page.locator("section:has(#force) canvas").first.screenshot() != curve
     assert "--set speed_km_h=290.0" in page.locator("section:has(#inputs)").inner_text()
     assert page.locator(".outside").count() > 0
+    values = page.locator("section:has(#values)").inner_text()
+    assert "Standard deviation" in values
+    assert "std_force_N" not in values
     assert "certificate" in page.locator(".warnings").inner_text()
     assert page.locator(".verdict").count() == 0
 
@@ -134,18 +145,56 @@ def test_two_settings_stand_side_by_side(page: Any) -> None:
     assert len(boxes) == 2
     assert boxes[0]["y"] == pytest.approx(boxes[1]["y"], abs=1)
     assert page.get_by_text("setting 2, 0–20 Hz").count() == 1
+    headings = page.locator("section:has(#values) thead").inner_text()
+    assert "uplift force 140 N" in headings
+    assert "inputs of the case" in headings
+    assert "Setting 1: uplift force 140 N" in page.locator("section:has(#inputs)").inner_text()
+    page.evaluate(RECORD_AXES)
+    page.set_viewport_size({"width": 1200, "height": 900})
+    page.wait_for_timeout(300)
+    ranges = page.evaluate("[...axes.values()].map(String)")
+    page.get_by_role("button", name="Smallest force").nth(1).click()
+    page.wait_for_timeout(200)
+    times = [text.partition(";")[0] for text in page.locator("section:has(#picture) .readout").all_inner_texts()]
+    assert len(ranges) == len(times) == 2
+    assert ranges[0] == ranges[1]
+    assert times[0] == times[1]
     page.get_by_role("button", name="Remove setting 2").click()
     assert page.locator("section:has(#picture) figure").count() == 1
     assert page.locator("section:has(#values) th", has_text="setting 2").count() == 0
 
 
 def test_refused_value_keeps_the_last_passage(page: Any) -> None:
+    """The message stands in the control of the field, and the values are marked until a number is accepted."""
     before = read_values(page, 0)
-    change(page, "speed [km/h], exact", 999)
-    status = page.locator(".readout").first.inner_text()
-    assert status.startswith("speed: 999 km/h is outside of its range. Choose 125 to 375 km/h.")
-    assert status.endswith("The page shows the last setting that was simulated.")
-    assert read_values(page, 0) == before
+    field = page.get_by_role("spinbutton", name="speed [km/h], exact", exact=True)
+    control = page.locator(".control").filter(has=field)
+    for text, problem in (("999", "Outside of the range"), ("", "No number")):
+        field.fill(text)
+        control.get_by_text(f"{problem}. Choose 125 to 375 km/h.").wait_for()
+        page.get_by_text("Outdated: the values are those of the last setting").wait_for()
+        assert read_values(page, 0) == before
+    change(page, "speed [km/h], exact", 260)
+    assert page.locator(".outdated").count() == 0
+    assert page.get_by_text("Outdated").count() == page.get_by_text("Outdated").filter(visible=False).count()
+
+
+def test_bars_of_pantographs_have_one_scale(browser: Any, tmp_path: Path) -> None:
+    """Widths of all bars are proportional to their numbers, which have three digits; a bar of 100 px has 1 px."""
+    running = ExploreServer(*open_explorer("en50318-2018/ac-simple/275-twin", (), (), tmp_path))
+    threading.Thread(target=running.serve_forever, daemon=True).start()
+    page = browser.new_page()
+    page.goto(running.address)
+    page.locator(".bars").nth(1).wait_for(timeout=120_000)
+    rows = page.locator(".band .row").all()
+    numbers = [float(row.inner_text().split()[0]) for row in rows]
+    widths = [row.locator(".bar").bounding_box()["width"] for row in rows]
+    page.close()
+    running.shutdown()
+    running.server_close()
+    assert len(rows) == 6
+    scale = max(widths) / max(numbers)
+    assert widths == pytest.approx([scale * number for number in numbers], rel=0.01, abs=1)
 
 
 def test_setting_is_saved_as_case_and_campaign(page: Any, server: ExploreServer) -> None:

@@ -83,6 +83,14 @@ def test_smallest_force_is_found(open_page: Any) -> None:
     assert ", 40 N" in page.locator(f"{FIGURE} .readout").inner_text()
 
 
+def test_smallest_force_is_found_before_the_picture_is_drawn(open_page: Any) -> None:
+    page = open_page("passage")
+    assert page.locator(f"{FIGURE} .readout").text_content() == ""
+    page.evaluate("figure => document.querySelector(`${figure} button[title='Smallest force']`).click()", FIGURE)
+    page.locator(f"{FIGURE} .readout", has_text=", 40 N").wait_for()
+    assert read_time(page) == pytest.approx(START_S + LOWEST_FRAME * STEP_S)
+
+
 def test_playing_and_dragging_change_the_instant(open_page: Any) -> None:
     page = open_at(open_page)
     area = page.locator(f"{FIGURE} .scene")

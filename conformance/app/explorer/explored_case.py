@@ -18,7 +18,7 @@ from pantocheck.conformance.grading.criterion_grading import find_value
 from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.quantities.evaluation import LINE, ValuesByOwner
-from pantocheck.conformance.quantities.registry import unit_of
+from pantocheck.conformance.quantities.registry import QUANTITIES, unit_of
 from pantocheck.conformance.records.traces import build_pantograph_traces, build_uplift_traces
 from pantocheck.conformance.results.exploration_format import (
     ExploredPassage,
@@ -199,6 +199,7 @@ def list_explored_values(values: ValuesByOwner, limits: Sequence[Limit]) -> list
         rows.append(
             ExploredValue(
                 quantity=name,
+                label=QUANTITIES[name].label,
                 unit=unit_of(name),
                 pantograph=owner,
                 value=value,
