@@ -308,6 +308,22 @@ def test_faulty_sensor_of_one_mast_is_named_and_not_graded(fault: str, files: in
     assert reason in " ".join(pantocheck("check", sidecar, COLUMNS="400").output.split())
 
 
+def test_inverted_mast_confirms_no_clock(tmp_path: Path) -> None:
+    """A pulse of 13 mm up, 70 m behind the inverted one of 50 mm, fits the passage of one pantograph."""
+    pair = MeasuredPair(1, supports=(300.0,))
+    sidecar = edit_toml(pair.write(tmp_path, PASSAGE), {"evaluated_m": [270.0, 330.0]})
+    table = pair.masts()
+    rebound = 13 * np.exp(-np.abs(SPEED * (table[:, 0] + pair.offset) - 370) / 3)
+    write_german(
+        tmp_path / "mast.csv",
+        ["Uhrzeit [s]", "Anhub Mast 1 [mm]"],
+        np.column_stack([table[:, 0], rebound - table[:, 1]]),
+    )
+    result = read_results(sidecar)
+    assert [source["state"] for source in result["sources"]] == ["unconfirmed"]
+    assert "the uplift at 300 m falls by" in result["skipped"]["0"][UPLIFT]
+
+
 @pytest.mark.parametrize("step", [0.1, 0.5, 1.0, 2.0])
 @pytest.mark.parametrize("rate", [200.0, 1000.0, 5000.0])
 def test_rounded_uplift_is_neither_overloaded_nor_off_zero(step: float, rate: float, tmp_path: Path) -> None:
