@@ -211,7 +211,7 @@ def test_build_steps_of_the_container_make_a_wheel(tmp_path: Path) -> None:
                 shutil.copytree(ROOT / name, source / target, ignore=shutil.ignore_patterns("__pycache__"))
             else:
                 shutil.copy(ROOT / name, source)
-    [command] = re.findall(r"^RUN (.*)$", first_stage, re.MULTILINE)
+    *_, command = re.findall(r"^RUN (.*)$", first_stage, re.MULTILINE)  # after those of the distribution
     command = command.replace("python ", f"{shlex.quote(sys.executable)} ", 1).replace("/wheels", str(wheels))
     subprocess.run(["sh", "-c", command], cwd=source, check=True, capture_output=True)
     [wheel] = wheels.glob("*.whl")
