@@ -27,8 +27,7 @@ picture of a passage (620, and 660 of templates) raised them before. A line agai
 moving mass drops (450), the comparison of spans (320) and transients of mass drops (100) raised them next. The
 explorer (1,110 lines of the product, 440 of templates), tables as sheets (940), bands, compared passages and files of
 figures (840, and 250 of templates), figures without a plotting package (830), a map and a second clock of measured
-lines (500), outputs of FMUs (140), the clocks of mass drops (80) and the checks of uplift sensors (260) have raised them
-last.
+lines (500), outputs of FMUs (140), clocks of mass drops (80) and checks of uplift (260) have raised them last.
 A lower number replaces these whenever it is reached. A subject that must add lines raises its number in the same
 commit, states the reason there, and adds at most 1,800 lines to the product, 1,500 to the tests and 900 to
 `verification/`.
