@@ -33,7 +33,7 @@ commit, states the reason there, and adds at most 1,800 lines to the product, 1,
 `verification/`.
 """
 
-MOST_WORDS = 84_670
+MOST_WORDS = 84_680
 """Largest number of words in the pages of `docs/`."""
 
 
