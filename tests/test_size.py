@@ -14,7 +14,7 @@ CODE = {".py", ".c", ".h", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
-    ("model", "conformance"): 95_340,
+    ("model", "conformance"): 95_345,
     ("templates",): 5_340,
     ("verification",): 21_130,
     ("tests",): 63_350,
@@ -33,7 +33,7 @@ commit, states the reason there, and adds at most 1,800 lines to the product, 1,
 `verification/`.
 """
 
-MOST_WORDS = 84_680
+MOST_WORDS = 84_690
 """Largest number of words in the pages of `docs/`."""
 
 

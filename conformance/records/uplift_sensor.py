@@ -25,6 +25,9 @@ SHORTEST_REST_M, FEWEST_AT_REST = 20.0, 20
 REST_TOLERANCE_M = 2e-3
 """Accepted rest beside 0 [m]; the largest of 336 simulated supports is 0.21 mm, and sensors drift."""
 
+REST_SHARE = 0.02
+"""Accepted rest as a share of the rise: waves ahead of the train scale with it, and so does a wrong unit."""
+
 NOISE_DEVIATIONS = 3.0
 """Accepted rest in standard deviations of the noise, if this is more."""
 
@@ -85,7 +88,8 @@ def _list_other_faults(support: float, uplift: RealArray, first: RealArray, last
     if passing.size and is_overloaded(passing):
         top = 1e3 * passing.max()
         yield f"the uplift at {support:g} m is flat at its largest value, {top:.4g} mm: the sensor was overloaded"
-    level, tolerance = float(np.median(rest)) if rest.size else 0.0, _find_tolerance(rest)
+    level = float(np.median(rest)) if rest.size else 0.0
+    tolerance = max(_find_tolerance(rest), REST_SHARE * float(passing.max(initial=level) - level))
     if abs(level) > tolerance:
         yield (
             f"the uplift at {support:g} m is {1e3 * level:.3g} mm at rest, before the passage, and not 0 within "
