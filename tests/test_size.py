@@ -14,10 +14,10 @@ CODE = {".py", ".c", ".h", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
-    ("model", "conformance"): 95_345,
+    ("model", "conformance"): 95_352,
     ("templates",): 5_340,
     ("verification",): 21_130,
-    ("tests",): 63_350,
+    ("tests",): 63_352,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
@@ -33,7 +33,7 @@ commit, states the reason there, and adds at most 1,800 lines to the product, 1,
 `verification/`.
 """
 
-MOST_WORDS = 84_690
+MOST_WORDS = 84_700
 """Largest number of words in the pages of `docs/`."""
 
 

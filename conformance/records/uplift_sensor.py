@@ -1,8 +1,8 @@
 """Faults of uplift sensors: an inverted sign, an overload and a zero error, for which no uplift at a support counts.
 
 The uplift counts from rest, and a passing pantograph lifts the wire. The rest is the median while the first pantograph
-is 100 to 300 m before the support. Where the record holds too little of this stretch, no zero error is claimed, and the
-uplift is taken as counted from 0.
+is 100 to 300 m before the support. Where a mast file holds too little of this stretch, its uplift does not count;
+in a table of one clock, such as that of a simulator, it is taken as counted from 0.
 """
 
 from collections.abc import Iterator
@@ -66,6 +66,14 @@ def find_uplift_fault(support: float, uplift: RealArray, first: RealArray, last:
         last: Positions of the last pantograph, (n,) [m].
     """
     return find_inversion(support, uplift, first, last) or next(_list_other_faults(support, uplift, first, last), None)
+
+
+def find_missing_rest(support: float, uplift: RealArray, first: RealArray) -> str | None:
+    """Absence of the rest from which a measured uplift counts, in words; arguments as of `find_uplift_fault`."""
+    if _find_rest(support, uplift, first).size:
+        return None
+    near, far = REST_M
+    return f"the uplift at {support:g} m has no rest, {near:g} to {far:g} m before the passage, from which it counts"
 
 
 def find_inversion(support: float, uplift: RealArray, first: RealArray, last: RealArray) -> str | None:

@@ -72,7 +72,7 @@ def write_case_line(results: Results, case: CaseResult) -> Text:
 
 
 def list_case_remarks(results: Results, case: CaseResult, footnotes: Sequence[str]) -> Iterator[RenderableType]:
-    """What stands against a pass, warnings, values of a case without limits, and its force.
+    """Reasons against a pass, warnings, values of a case without limits, and its force.
 
     Args:
         results: Results with the case.

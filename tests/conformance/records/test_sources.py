@@ -339,8 +339,8 @@ def test_rounded_uplift_is_neither_overloaded_nor_off_zero(step: float, rate: fl
     assert read_results(sidecar)["verdict"] == "pass"
 
 
-def test_zero_error_is_not_claimed_without_a_rest(tmp_path: Path) -> None:
-    """The file of the masts begins 85 m before the first support: 145 m before the second one."""
+def test_mast_file_without_a_rest_does_not_pass(tmp_path: Path) -> None:
+    """The file of the masts begins 85 m before the support; a zero error of -3 mm could hide there."""
     pair = MeasuredPair(1, times=(215 / SPEED, 16.0))
     sidecar = pair.write(tmp_path, STATED)
     edit_toml(sidecar, {"evaluated_m": [300.0, 350.0], "source.0.columns.uplift_2_m": None,
@@ -348,7 +348,11 @@ def test_zero_error_is_not_claimed_without_a_rest(tmp_path: Path) -> None:
     table = pair.masts()
     table[:, 1] -= 3.0
     write_german(tmp_path / "mast.csv", ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))], table)
-    assert read_results(sidecar)["verdict"] == "pass"
+    result = read_results(sidecar)
+    assert result["verdict"] == "skip"
+    reasons = [row["reason"] for row in result["criteria"] if row["quantity"] == UPLIFT]
+    assert "has no rest, 100 to 300 m before the passage" in reasons[0]
+    assert translate(reasons[0], "de").missing == ()
 
 
 @pytest.mark.parametrize("copy", ["same column", "copied file"])
@@ -556,9 +560,9 @@ def test_run_of_a_case_needs_one_time(tmp_path: Path) -> None:
         # The train is 60 m before the first support at 3.4286 s and 60 m past the last one at 6.8571 s. The clock is
         # known to 0.05 s, and one and a half steps of 0.005 s are no gap.
         ((-4.0, 6.88), "undecided", "ends 0.025 s too soon: the uplift at 420 m needs 60 m past the support"),
-        ((3.42, 16.0), "undecided", "begins 0.034 s too late: the uplift at 300 m needs 60 m before the support"),
+        ((3.42, 16.0), "skip", "begins 0.034 s too late: the uplift at 300 m needs 60 m before the support"),
         ((-4.0, 6.92), "pass", None),
-        ((3.38, 16.0), "pass", None),
+        ((3.38, 16.0), "skip", None),  # the rest before the passage is missing
         ((-4.0, 6.85), "skip", None),  # the support is not covered at all, and its criterion says so
     ],
 )
