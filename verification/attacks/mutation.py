@@ -170,7 +170,7 @@ class Run:
         tests: dict[str, float] = {}
         for file in self.covering.select(mutant.file, int(re.findall(r"\d+", diff[0])[0])):
             seconds = self.covering.seconds[file]
-            if sum(tests.values()) + seconds <= self.budget_s and len(tests) < self.tests:
+            if not tests or (sum(tests.values()) + seconds <= self.budget_s and len(tests) < self.tests):
                 tests[file] = seconds
         worker.write(mutant.file, mutant.mutate(source))
         try:
