@@ -12,7 +12,12 @@ from helpers.signer_fixtures import Signers
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents import key_files
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck
-from pantocheck.conformance.documents.cms_check import REVOCATION, describe_signatures
+from pantocheck.conformance.documents.cms_check import (
+    NO_SIGNATURE,
+    REVOCATION,
+    SignatureReport,
+    describe_signatures,
+)
 from pantocheck.conformance.documents.signature_check import check_signatures
 from pantocheck.conformance.documents.verification import check_origin
 
@@ -28,6 +33,15 @@ def document(tmp_path: Path) -> Path:
 def any_key(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sign with keys that `sign` refuses, as other programs do."""
     monkeypatch.setattr(key_files, "_check_usable", lambda *_: None)
+
+
+def test_document_without_a_signature_is_described_by_what_was_checked() -> None:
+    """Trust roots that nothing was compared with are named, unless a note says why."""
+    unsigned = "unsigned: nothing shows who made this document."
+    for roots, note, lines in (
+        (False, "", [unsigned]), (True, "", [unsigned, NO_SIGNATURE]), (True, "no pyhanko", ["no pyhanko"])
+    ):  # fmt: skip
+        assert describe_signatures(SignatureReport((), (), roots, note)) == lines
 
 
 def test_chain_to_a_given_root_is_authentic(signers: Signers, document: Path, roots_file: Path) -> None:

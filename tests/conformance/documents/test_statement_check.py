@@ -73,6 +73,12 @@ def test_genuine_results_have_no_contradiction(wave_results: Results) -> None:
     assert list_contradictions(wave_results.to_dict()) == ()
 
 
+def test_note_of_a_modified_copy_is_its_own(wave_results: Results) -> None:
+    tree = wave_results.to_dict()
+    case_of(tree).update(library="modified", notes=[*case_of(tree)["notes"], NOTE])
+    assert not any(NOTE in line for line in list_contradictions(tree))
+
+
 @pytest.mark.parametrize("name", CHANGES)
 def test_statement_that_does_not_follow_is_found(name: str, wave_results: Results) -> None:
     change, text = CHANGES[name]

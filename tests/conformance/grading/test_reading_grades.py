@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,11 +20,12 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.execution.runner import run_cases
-from pantocheck.conformance.grading.case_conformity import find_case_conformity
+from pantocheck.conformance.grading.case_conformity import count_passing_starts, find_case_conformity
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.pages.certificate_page import build_certificate, build_summary
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.quantities.evaluation import Evaluation
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
@@ -99,6 +101,18 @@ def test_probability_under_a_reading_is_that_of_the_shifted_sample() -> None:
     found = find_case_conformity(rows, (0, 0), [shifted, outside, unread])
     assert found is not None
     assert (found.probability, found.readings) == (0.75, {"a": 0.5, "b": 0.0})
+
+
+def test_start_without_a_counted_value_or_with_one_outside_does_not_pass() -> None:
+    """Values 10.5, 11.5 (on the limit), 12 and none under a limit of 11.5; a row without a verdict does not count."""
+    rows = [make_row(value=10.5, upper=11.5), make_row("max_force_N", value=170.0, upper=160.0, verdict="info")]
+    starts = [Evaluation({1: {"max_force_N": 170.0} | values}, {}) for values in (
+        {"std_force_N": 10.5}, {"std_force_N": 11.5}, {"std_force_N": 12.0}, {}
+    )]  # fmt: skip
+    run = SimpleNamespace(evaluation=starts[0], start_evaluations=starts[1:])
+    assert count_passing_starts(run, rows) == (4, 2)  # type: ignore[arg-type]
+    run.start_evaluations = []
+    assert count_passing_starts(run, rows) == (0, 0)  # type: ignore[arg-type]
 
 
 def test_filter_of_a_reading_keeps_the_other_keys_of_the_case(edited_case: EditedCase) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
+from helpers.example_passage import with_passage
 from helpers.example_results import example
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.case_facts_format import BaselineComparison
@@ -25,12 +26,29 @@ def test_case_without_a_fact_of_its_run_is_refused(key: str) -> None:
     results: dict[str, Any] = Results.model_validate(example()).to_dict()
     results["cases"][0]["run"] |= {"simulated_s": 0.0, "wall_s": None}
     assert Results.model_validate(results | {"conformity": 0.0}).cases[0].run.simulated_s == 0.0
-    assert CaseConformity(probability=0.0, starts=0, passing_starts=0).starts == 0
+    conformity = {"probability": 0.0, "starts": 0, "passing_starts": 0, "readings": {"a": 0.0, "b": 1.0}}
+    assert CaseConformity.model_validate(conformity).starts == 0
+    for wrong in ({"probability": 1.1}, {"starts": -1}, {"readings": {"a": -0.1}}, {"readings": {"a": 1.1}}):
+        with pytest.raises(ValidationError):
+            CaseConformity.model_validate(conformity | wrong)
     with pytest.raises(ValidationError, match="greater than 0"):
         RunTable.model_validate({"simulated_s": 0.0})
     del results["cases"][0]["run"][key]
     with pytest.raises(ValidationError, match=key):
         Results.model_validate(results)
+
+
+def test_picture_of_a_wire_that_the_line_does_not_have_is_refused() -> None:
+    """The wires of the picture are the curves 0 and 1 of the shape: one curve, or none, is too few."""
+    results = with_passage()
+    assert Results.model_validate(results).cases[0].motion is not None
+    case = results["cases"][0]
+    wires = case["motion"]["wires"]
+    case["line_shape"]["side"]["curves"].pop()
+    for changes in ({}, {"line_shape": None, "motion": case["motion"] | {"wires": wires[:1]}}):
+        case |= changes
+        with pytest.raises(ValidationError, match="a wire that the shape of the line does not have"):
+            Results.model_validate(results)
 
 
 @pytest.mark.parametrize(("key", "wrong"), [("drift_pct", 0.0), ("values", -1), ("drifted", -1)])

@@ -12,7 +12,7 @@ from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.results.motion_format import CodedField, PassageMotion, code_field
+from pantocheck.conformance.results.motion_format import CodedField, MovingWire, PassageMotion, code_field
 from pantocheck.conformance.runs import passage_film
 from pantocheck.conformance.runs.case_run import run_passage
 
@@ -82,6 +82,7 @@ def test_coded_field_is_exact_and_refuses_damage() -> None:
     """Numbers on the steps, the largest ones and missing ones come back; other data are refused."""
     chance = np.random.default_rng(5)
     values = 0.1 * chance.integers(-32000, 32000, (7, 5))
+    values[0] = -0.1 * np.array([1, 2, 2**7, 2**14, 32000])
     values[2:4, 1:3] = np.nan
     coded = code_field(values, 0.1)
     assert_allclose(coded.decode(), values, atol=1e-9)
@@ -90,3 +91,5 @@ def test_coded_field_is_exact_and_refuses_damage() -> None:
     for key, value in (("frames", 8), ("data", tree["data"][:-8]), ("data", "!" + tree["data"][1:]), ("step", 0.0)):
         with pytest.raises(ValidationError):
             CodedField.model_validate(tree | {key: value})
+    with pytest.raises(ValidationError, match="4 and 5"):
+        MovingWire(curve=0, x_m=[0.0, 1.0, 2.0, 3.0], rise_mm=coded)

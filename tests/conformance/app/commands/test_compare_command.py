@@ -84,7 +84,8 @@ def test_two_records_are_compared_for_both_pantographs(folder: Path) -> None:
         assert agreement["correlation"] == pytest.approx(1, abs=1e-6)
         assert agreement["bands"][0]["difference_N"] == pytest.approx(0.1 * SIGMA, rel=2e-3)
         assert [span["start_m"] for span in agreement["spans"]] == [240.0, 300.0]
-        assert len(content["cases"][0]["owners"][owner]["charts"]) == 6
+        wide = [chart["wide"] for chart in content["cases"][0]["owners"][owner]["charts"]]
+        assert wide == [True, True, False, False, False, False]  # curves along the track have the whole width
     for name in ("comparison.html", "comparison.pdf"):
         assert (folder / "out" / name).stat().st_size > 10_000
     # The table of values has all quantities of both subjects.
