@@ -8,6 +8,7 @@ from site_pages.command_pages import build_command_page
 from site_pages.contributing_page import build_contributing_page
 from site_pages.converged_pages import build_converged_page
 from site_pages.element_pictures import write_element_pictures
+from site_pages.feature_table import build_feature_table
 from site_pages.format_pages import build_format_page
 from site_pages.guide_tables import build_guide_counts
 from site_pages.input_tables import build_condition_table, build_power_table
@@ -39,6 +40,7 @@ PAGES = {
 
 TABLES = {
     "conditions": build_condition_table,
+    "features": build_feature_table,
     "guide-counts": build_guide_counts,
     "limit-trust": build_trust_table,
     "record-checks": build_check_table,

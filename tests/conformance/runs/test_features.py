@@ -5,15 +5,13 @@ import shutil
 import subprocess
 import sys
 import sysconfig
-from collections.abc import Iterator
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
-from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Any
 
 import pytest
-from pydantic import BaseModel, Field
-from pydantic.fields import FieldInfo
+from pydantic import Field
 
 from helpers.section_lines import section_line
 from pantocheck.conformance.app.pytest_plugin.user_fixtures import run_and_grade
@@ -21,10 +19,9 @@ from pantocheck.conformance.app.self_test.adapter_check import build_short_case
 from pantocheck.conformance.cases.case import RUN_FEATURES, Case, list_case_features
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.features import find_declaration
-from pantocheck.conformance.core.sourced_table import PROVENANCE, InputTable, is_absent
+from pantocheck.conformance.core.sourced_table import InputTable, is_absent
 from pantocheck.conformance.line.elements.point_mass import PointMassTable
 from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.runs.command_system import build_case_message
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Skipped
@@ -101,7 +98,7 @@ def test_object_of_a_test_receives_only_the_features_that_it_lists() -> None:
     assert not hasattr(ReferenceSimulator(), "features")
 
 
-def test_features_are_declared_documented_and_those_of_the_keys_in_use() -> None:
+def test_features_are_declared_documented_and_those_of_the_keys_in_use(monkeypatch: pytest.MonkeyPatch) -> None:
     [case] = select_cases(["en50318-2018/ac-stitched/320"])[-1:]
     features = list_case_features(case)
     assert {"chain", "stagger", "stitch_wire", "dropper_mass"} <= set(features)
@@ -109,11 +106,13 @@ def test_features_are_declared_documented_and_those_of_the_keys_in_use() -> None
     mass = PointMassTable(x_m=150.0, wire="contact_wire", mass_kg=5.0, name="section insulator")
     added = replace(case, line=case.line.model_copy(update={"point_mass": (mass,)}))
     assert set(list_case_features(added)) - set(features) == {"point_masses"}
-    keys = [*list_optional_keys(LineFile, "line"), *list_optional_keys(PantographFile, "pantograph")]
+    monkeypatch.syspath_prepend(str(EXAMPLES.parent / "docs"))
+    site = import_module("site_pages.feature_table")
+    keys = list(site.list_file_keys())
     assert [path for path, field in keys if find_declaration(field) is None] == []
     names = {feature.name for _, field in keys if (feature := find_declaration(field)) and feature.name}
-    page = (EXAMPLES.parent / "docs" / "systems.md").read_text(encoding="utf-8")
-    assert [name for name in sorted(names | RUN_FEATURES.keys()) if f"| `{name}` |" not in page] == []
+    assert site.RUN_USES.keys() == RUN_FEATURES.keys()
+    assert [name for name in names | RUN_FEATURES.keys() if f"| `{name}` |" not in site.build_feature_table()] == []
 
 
 def test_case_of_several_sections_reaches_a_program_that_simulates_them(case_250: Case) -> None:
@@ -129,23 +128,3 @@ def test_case_of_several_sections_reaches_a_program_that_simulates_them(case_250
         assert len(section["droppers"]["length_m"]) == len(section["span_limits_m"]) - 1
         assert len(section["steady_arms"]["position_m"]) == len(section["span_limits_m"]) - 2
         assert len(section["contact_wire"]["height_m"]) == len(section["span_limits_m"])
-
-
-def list_optional_keys(table: type[BaseModel], path: str) -> Iterator[tuple[str, FieldInfo]]:
-    """Keys with a default of a table and of the tables inside."""
-    for name, field in table.model_fields.items():
-        if name in PROVENANCE or name == "force_law":
-            continue
-        if not field.is_required() and not isinstance(field.default, BaseModel):
-            yield f"{path}.{name}", field
-        for model in find_models(field.annotation):
-            yield from list_optional_keys(model, f"{path}.{name}")
-
-
-def find_models(annotation: Any) -> Iterator[type[BaseModel]]:
-    """Models inside the type of a key."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    elif get_origin(annotation) in (Union, UnionType, Annotated, tuple, dict):
-        for argument in get_args(annotation):
-            yield from find_models(argument)
