@@ -70,11 +70,17 @@ def test_covering_tests_execute_the_line_and_the_one_of_its_name_comes_first(toy
     assert name_definitions(SOURCE, 8) == ["grade"]
     assert name_definitions(SOURCE, 3) == ["LIMIT"]
     assert list(list_statement_lines(SOURCE, 6)) == [6]  # the body of a function is other statements
-    file, named, near = "model/grading/grade.py", "tests/model/grading/test_grade.py", "tests/model/test_near.py"
-    use = "tests/conformance/test_use.py"
-    lines = {file: {"8": [use, named, near], "6": [use]}, "model/use.py": {"6": [named, near]}}
-    record = {"lines": lines, "seconds": {named: 9.0, near: 12.0, use: 1.0}}
-    tests = CoveringTests(toy, [record])
+    file, named, near = (
+        "model/grading/grade.py",
+        "tests/model/grading/test_grade.py::test",
+        "tests/model/test_near.py::a",
+    )
+    use = "tests/conformance/test_use.py::test"
+    lines = {file: {"8": "0x3", "6": "0x2"}, "model/use.py": {"6": "0x1"}}
+    first = {"lines": lines, "seconds": {named: 9.0, use: 1.0}}
+    other = {"lines": {file: {"8": "0x1"}, "model/use.py": {"6": "0x1"}}, "seconds": {near: 12.0, f"{near}b": 1.0}}
+    tests = CoveringTests(toy, [first, other])
+    assert tests.file_seconds["tests/model/test_near.py"] == 13.0
     assert tests.select(file, 8) == [named, use, near]
     assert tests.select(file, 6) == [use]
     assert tests.select(file, 3) == [named, use, near]  # a constant: every test of the file
@@ -87,9 +93,10 @@ def test_coverage_of_the_tests_is_recorded_by_line(toy: Path, tmp_path: Path) ->
     worker.run_tests(["tests/model/test_near.py"], 60.0, tmp_path / "coverage.json")
     worker.close()
     record = json.loads((tmp_path / "coverage.json").read_text("utf-8"))
-    assert record["lines"]["model/grading/grade.py"]["8"] == ["tests/model/test_near.py"]
-    assert record["lines"]["model/grading/grade.py"]["6"] == []  # at import
-    assert record["seconds"]["tests/model/test_near.py"] > 0
+    test = "tests/model/test_near.py::test_grade"
+    assert record["lines"]["model/grading/grade.py"]["8"] == hex(1 << list(record["seconds"]).index(test))
+    assert record["lines"]["model/grading/grade.py"]["6"] == "0x0"  # at import
+    assert record["seconds"][test] > 0
 
 
 def test_tests_run_on_the_changed_copy(toy: Path, tmp_path: Path) -> None:

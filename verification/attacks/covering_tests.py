@@ -1,8 +1,11 @@
-"""Choice of the test files for a mutant: those that execute its line, the nearest first."""
+"""Choice of the tests for a mutant: those that execute its line, the nearest first."""
 
 import ast
 import re
+from collections import defaultdict
 from collections.abc import Iterable
+from functools import reduce
+from operator import or_
 from pathlib import Path
 from typing import Any
 
@@ -11,21 +14,27 @@ BOUND_TESTS = ("test_bounds_of_keys.py", "test_schemas.py")
 
 
 class CoveringTests:
-    """Test files that execute each line of the product, from the coverage of one run of all tests."""
+    """Tests that execute each line of the product, from the coverage of one run of all tests."""
 
     def __init__(self, root: Path, records: Iterable[dict[str, Any]]) -> None:
         self.root = root
-        self.lines: dict[str, dict[int, set[str]]] = {}
         self.seconds: dict[str, float] = {}
+        """Processor time by the name of the test, with its file [s]."""
+        self.file_seconds: defaultdict[str, float] = defaultdict(float)
+        self.lines: dict[str, dict[int, int]] = {}
+        """Tests by file and line: the number whose bits are the places of the tests in `seconds`."""
         for record in records:
+            begin = len(self.seconds)
             self.seconds |= record["seconds"]
             for file, lines in record["lines"].items():
                 known = self.lines.setdefault(file, {})
                 for line, tests in lines.items():
-                    known.setdefault(int(line), set()).update(tests)
+                    known[int(line)] = known.get(int(line), 0) | int(tests, 16) << begin
+        for test, seconds in self.seconds.items():
+            self.file_seconds[_name_file(test)] += seconds
 
     def select(self, file: str, line: int) -> list[str]:
-        """Test files that execute a line: the one of its name, those of the same folder, then the fastest.
+        """Tests that execute a line: those in the file of its name, those of the same folder, then the fastest.
 
         A line that runs at import belongs to every test of its file; those that mention its definition come first. The
         tests of all bounds precede them where the statement has the bounds of a key.
@@ -33,18 +42,26 @@ class CoveringTests:
         source = (self.root / file).read_text("utf-8")
         lines, names = self.lines.get(file, {}), name_definitions(source, line)
         statement = list_statement_lines(source, line)
-        found = set().union(*(lines.get(number, set()) for number in statement)) or set().union(*lines.values())
+        executing = [lines.get(number, 0) for number in statement]
+        bits = reduce(or_, executing if any(executing) else lines.values(), 0)
+        found = {test for number, test in enumerate(self.seconds) if bits >> number & 1}
         has_bounds = any("Field(" in source.splitlines()[number - 1] for number in statement)
-        bounds = {test for test in self.seconds if has_bounds and Path(test).name in BOUND_TESTS}
+        bounds = {test for test in self.seconds if has_bounds and Path(_name_file(test)).name in BOUND_TESTS}
         mention = re.compile(rf"\b({'|'.join(names)})\b")
+        texts = {name: (self.root / name).read_text("utf-8") for name in set(map(_name_file, found | bounds))}
 
         def rank(test: str) -> tuple[bool, bool, bool, bool, float]:
-            text, path = (self.root / test).read_text("utf-8"), Path(test)
+            path = Path(_name_file(test))
             near = path.parent == "tests" / Path(file).parent
             is_named = path.name == f"test_{Path(file).name}"
-            return test not in bounds, not is_named, not mention.search(text), not near, self.seconds[test]
+            mentioned = mention.search(texts[_name_file(test)])
+            return test not in bounds, not is_named, not mentioned, not near, self.seconds[test]
 
         return sorted(found | bounds, key=rank)
+
+
+def _name_file(test: str) -> str:
+    return test.partition("::")[0]
 
 
 def list_statement_lines(source: str, line: int) -> range:

@@ -22,35 +22,33 @@ LOADED = ("numba", "pydantic", "typer", "scipy.stats", "scipy.io", "scipy.linalg
 
 
 class CoverageRecorder:
-    """Plug-in of pytest: lines of the product that each test file executes, and its processor time."""
+    """Plug-in of pytest: lines of the product that each test executes, and its processor time."""
 
     def __init__(self, folder: Path) -> None:
         sources = [str(folder / name / "*") for name in ("model", "conformance")]
-        self.folder, self.file, self.begin = folder, "", time.process_time()
+        self.folder, self.test, self.begin = folder, "", time.process_time()
         self.seconds: defaultdict[str, float] = defaultdict(float)
         self.coverage = coverage.Coverage(data_file=None, config_file=False, include=sources)
         self.coverage.start()
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
         """Begin a test."""
-        self.switch(nodeid.partition("::")[0])
-
-    def switch(self, file: str) -> None:
-        """Begin a test file."""
         now = time.process_time()
-        self.seconds[self.file] += now - self.begin
-        self.begin = now
-        if file != self.file:
-            self.file = file
-            self.coverage.switch_context(file)
+        self.seconds[self.test] += now - self.begin
+        self.test, self.begin = nodeid, now
+        self.coverage.switch_context(nodeid)
 
     def write(self, path: Path) -> None:
-        """Write test files by line of every product file, and the seconds of every test file."""
-        self.switch("")
+        """Write the seconds of every test, and the tests of every line as the bits of a hexadecimal number."""
+        self.pytest_runtest_logstart("")
         self.coverage.stop()
+        bits = {test: 1 << number for number, test in enumerate(self.seconds)} | {"": 0}
         data, lines = self.coverage.get_data(), {}
         for name in data.measured_files():
-            tests = {line: sorted(filter(None, files)) for line, files in data.contexts_by_lineno(name).items()}
+            tests = {
+                line: hex(sum(bits[test] for test in set(found)))
+                for line, found in data.contexts_by_lineno(name).items()
+            }
             lines[Path(name).relative_to(self.folder.resolve()).as_posix()] = tests
         path.write_text(json.dumps({"lines": lines, "seconds": self.seconds}), "utf-8")
 
