@@ -91,6 +91,7 @@ class MultibodyPantograph(Fmi3Slave):
         return moment / inertia(angle), (spring - self.contact_force) / HEAD_KG
 
     def do_step(self, current_time, step_size):
+        """One step by the implicit midpoint rule; the rates at its middle follow by fixed-point iteration."""
         h, rate, speed = step_size, self.rate, self.speed
         for _ in range(30):
             a, z = self.accelerations(self.angle + h / 2 * rate, self.head + h / 2 * speed, rate, speed)

@@ -131,6 +131,7 @@ def bind_single_steps(
     advance, load = bind_arrays(_advance, kernel, motion, train, work), np.zeros(1)
 
     def advance_once(step: int) -> None:
+        """Advance one time step, and record it as the step of this number."""
         here = slice(step, step + 1)
         part = recording._replace(
             contact=recording.contact[here],

@@ -137,19 +137,7 @@ def campaign_command(
     with open_store(out, prepared.identity) as store:
         if retry_failed:
             store.forget_failed()
-        ending, interrupted = _drive(prepared, store)
-        results = evaluate_campaign(prepared, store, ending, _pair_with(compare, prepared, store))
-        files = _write_results(results, store, out)
-    counts = f"{results.finished} of {results.total} runs finished, {results.failed} failed"
-    exit_code = interrupted or int(results.finished < results.total or results.failed > 0)
-    return CommandOutput(
-        Text(STOPPED[ending] + counts),
-        results,
-        _list_reasons(results),
-        files=files,
-        exit_code=exit_code,
-        remarks=remark_missing_formats(),
-    )
+        return _run_open(prepared, store, out, compare)
 
 
 def _parse_variations(texts: Sequence[str]) -> list[dict[str, Any]]:
@@ -189,6 +177,21 @@ def _prepare(
     changed = validate_model({**stated, **execution}, Execution, "command line")
     return prepare_campaign(
         file.model_copy(update={"execution": changed, "case_folders": (*file.case_folders, *folders)}), path.parent
+    )
+
+
+def _run_open(prepared: PreparedCampaign, store: CampaignStore, out: Path, compared: Path | None) -> CommandOutput:
+    """Run the open runs of a campaign, evaluate all, also beside those of another folder, and write the tables."""
+    ending, interrupted = _drive(prepared, store)
+    results = evaluate_campaign(prepared, store, ending, _pair_with(compared, prepared, store))
+    counts = f"{results.finished} of {results.total} runs finished, {results.failed} failed"
+    return CommandOutput(
+        Text(STOPPED[ending] + counts),
+        results,
+        _list_reasons(results),
+        files=_write_results(results, store, out),
+        exit_code=interrupted or int(results.finished < results.total or results.failed > 0),
+        remarks=remark_missing_formats(),
     )
 
 

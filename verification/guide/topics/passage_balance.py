@@ -92,6 +92,7 @@ def measure_balances(line: DiscretisedLine, passage: Passage) -> PassageBalance:
     upwards = (bandwidth_order(line) % 2 == 0)[matrices.free].astype(np.float64)
 
     def state() -> "_State":
+        """Motion, forces and energies at the end of the last time step."""
         w, r = end_of_step(motion, kernel.layout, passage.time_step)
         q, v = (np.stack([w[i], r[i]], axis=-1).ravel()[place] for i in range(2))
         z, u = train.z[0], train.z[1]
