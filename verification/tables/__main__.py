@@ -32,9 +32,7 @@ class Program(NamedTuple):
     files: tuple[str, ...]
     """Names of the files, one for each table in the order of the output; a single name takes the rows of all tables."""
     arguments: str = ""
-    """{docs} is the folder of the pages, {drops} that of the records with known modes (DROPS in the environment), and
-    {before} an interpreter with an earlier version (BEFORE in the environment).
-    """
+    """{docs} is the folder of the pages, {drops} that of the records with known modes (DROPS in the environment)."""
     preparation: str = ""
     """Arguments of `pantocheck` for a run before; {folder} is a temporary folder."""
 
@@ -48,7 +46,6 @@ PROGRAMS = {
         "speed.accuracy_and_cost", ("accuracy-and-cost",), "--out {docs}/accuracy-and-cost.svg"
     ),
     "run-in": Program("tables.run_in", ("run-in-275", "run-in-320")),
-    "tuning-runs": Program("tables.tuning_runs", ("tuning-runs",)),
     "force-law": Program("tables.law_balance", ("force-law-level", "force-law-gradient")),
     "overlap": Program(
         "tables.overlap_passages", tuple(f"overlap-{name}" for name in ("forces", "difference", "mesh", "cost"))
@@ -105,9 +102,6 @@ PROGRAMS = {
     "constraint-limit": Program("tables.constraint_limit", ("constraint-limit",)),
     "pantograph-fit": Program("tables.pantograph_fit", ("pantograph-fit",)),
     "identification": Program("tables.identification", ("identification-scores",), "{drops} --made-up 6"),
-    "identification-change": Program(
-        "tables.identification_change", ("identification-change",), "{drops} --before {before}"
-    ),
     "disturbances": Program("tables.drop_disturbances", ("disturbances", "disturbances-tensions"), "{drops}"),
     "field-coverage": Program("tables.field_coverage", ("field-coverage", "field-modes"), "{docs}/field-records.csv"),
     "sampled-modes": Program("tables.sampled_modes", ("sampled-modes",), "--draws 21"),
@@ -168,7 +162,6 @@ def run_program(program: Program) -> None:
     """Run a program with its preparation, and write its tables."""
     with tempfile.TemporaryDirectory() as folder:
         places = {"folder": folder, "docs": str(DOCS), "drops": os.environ.get("DROPS", "")}
-        places["before"] = os.environ.get("BEFORE", "")
         if program.preparation:
             arguments = program.preparation.format(**places).split()
             subprocess.run([sys.executable, "-m", "pantocheck", *arguments], check=False)
