@@ -37,6 +37,8 @@ EXAMPLES = (example, with_measured_run, with_reference, with_passage)
 @pytest.mark.parametrize("language", OTHERS)
 def test_catalogues_have_the_same_entries_arguments_and_numbers(language: Language) -> None:
     entries, first = translation.read_catalogue(language), translation.read_catalogue(OTHERS[0])
+    file = (TEMPLATES / "languages" / f"{language}.toml").read_text("utf-8")
+    assert translation.read_sections(language) == tomllib.loads(file)
     assert entries.keys() == first.keys()
     for key, text in entries.items():
         assert text.strip(), key
