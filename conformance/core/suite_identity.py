@@ -1,12 +1,11 @@
 """Identity of the suite: digest of its installed files and commit of its repository."""
 
 import hashlib
+import os
 import subprocess
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-
-from pantocheck.conformance.core.files import file_digest
 
 PACKAGES = ("pantocheck.conformance", "pantocheck.model", "pantocheck.reference_cases", "pantocheck.templates")
 SOURCE_SUFFIXES = frozenset({".py", ".c", ".h", ".toml", ".html", ".typ", ".css", ".js", ".md", ".mplstyle"})
@@ -18,11 +17,12 @@ def suite_digest() -> str:
     """SHA-256 of the installed files of the suite, by their names; equal for a repository and a plain installation."""
     digest = hashlib.sha256()
     for package in PACKAGES:
-        folder = Path(str(files(package)))
-        paths = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*")}
-        for name, path in sorted(paths.items()):
-            if path.suffix in SOURCE_SUFFIXES and path.is_file():
-                digest.update(f"{package}/{name} {file_digest(path)}\n".encode())
+        folder = str(files(package))
+        paths = [os.path.join(parent, name) for parent, _, names in os.walk(folder) for name in names]
+        sources = (path for path in paths if os.path.splitext(path)[1] in SOURCE_SUFFIXES)
+        for name, path in sorted((path[len(folder) + 1 :].replace(os.sep, "/"), path) for path in sources):
+            with open(path, "rb") as file:
+                digest.update(f"{package}/{name} {hashlib.sha256(file.read()).hexdigest()}\n".encode())
     return f"sha256:{digest.hexdigest()}"
 
 
