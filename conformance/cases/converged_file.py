@@ -103,14 +103,9 @@ class ConvergedFile(InputTable):
             seen.add((entry.owner, entry.quantity))
 
 
+@cache
 def find_converged(case_id: str) -> ConvergedFile | None:
     """Converged values of a library case; None if there are none."""
-    return _read_library().get(case_id)
-
-
-@cache
-def _read_library() -> dict[str, ConvergedFile]:
-    """Converged values of all library cases, by id of the case."""
-    paths = sorted((library_folder() / FOLDER).rglob("*.toml"))
-    files = (read_model(path, ConvergedFile, "converged values") for path in paths)
-    return {file.case: file for file in files}
+    path = library_folder() / FOLDER / f"{case_id}.toml"
+    is_known = path.is_file() and ".." not in path.parts
+    return read_model(path, ConvergedFile, "converged values") if is_known else None
