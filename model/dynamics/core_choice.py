@@ -74,6 +74,7 @@ def core_name() -> str:
         return "none"
 
 
+@cache
 def find_core_in_c() -> Core | str:
     """Core in C of this installation, or the reason why there is none."""
     paths = (SOURCES[0].with_suffix(suffix) for suffix in EXTENSION_SUFFIXES)
