@@ -232,7 +232,8 @@ class Panel:
             case DrawnLine(style=style):
                 x, y = self._place(mark.x, mark.y)
                 line = f'<path d="{write_path(x, y)}" {style.describe()}/>' if style.linestyle else ""
-                points = [pair for pair in zip(x.tolist(), y.tolist(), strict=True) if np.isfinite(pair).all()]
+                known = np.isfinite(x) & np.isfinite(y)
+                points = zip(x[known].tolist(), y[known].tolist(), strict=True)
                 drawn = line + (write_markers(points, style) if style.marker else "")
             case FilledArea():
                 drawn = self._write_area(mark)

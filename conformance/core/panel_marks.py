@@ -1,6 +1,7 @@
 """Parts of a figure as SVG: curves, areas and texts, placed in points from the upper left corner."""
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from xml.sax.saxutils import escape
@@ -21,6 +22,9 @@ BASELINES = {"top": 0.76, "center": 0.38, "baseline": 0.0, "bottom": -0.24}
 
 LINE_DISTANCE = 1.16
 """Distance of two lines of a text, as a share of the font size."""
+
+_END_ZEROS = re.compile(r"(?:\.00|(?<=\.\d)0)(?!\d)")
+"""Zeros that `write_number` leaves out, in numbers with two decimals."""
 
 Dash = str | tuple[float, tuple[float, ...]]
 """Line style: a key of `DASHES`, or an offset with dashes and gaps, in line widths."""
@@ -62,9 +66,8 @@ def write_path(x: RealArray, y: RealArray) -> str:
     for part in np.split(np.arange(x.size), breaks):
         if part.size and known[part[0]]:
             shown = thin_path(np.column_stack((x[part], y[part])))
-            places = [f"{write_number(px)} {write_number(py)}" for px, py in shown.tolist()]
-            parts.append("M" + "L".join(places))
-    return "".join(parts)
+            parts.append("M" + "L".join([f"{px:.2f} {py:.2f}" for px, py in shown.tolist()]))
+    return _END_ZEROS.sub("", "".join(parts))
 
 
 def thin_path(points: RealArray) -> RealArray:

@@ -8,9 +8,12 @@ A filled disc is inside the limits, a cross is outside, an open ring does not co
 A value beyond the drawing is an arrow at its edge. The whisker is the error of the value.
 """
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
+from typing import TypeVar
 
+import numpy as np
+
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.look import read_look
 
 WIDTH, HEIGHT = 100.0, 18.0
@@ -24,6 +27,8 @@ BAR_REACH = 0.56
 EDGE = 6.0
 # Width of a column of the strip of a sample.
 STRIP_WIDTH = 2.0
+
+_Real = TypeVar("_Real", float, RealArray)
 
 
 def draw_margin_bar(
@@ -45,8 +50,9 @@ def draw_margin_bar(
     """
     centre, half = _scale(lower, upper)
 
-    def across(x: float) -> float:
-        return WIDTH / 2 * (1 + BAR_REACH * (x - centre) / half)
+    def across(x: _Real) -> _Real:
+        place: _Real = WIDTH / 2 * (1 + BAR_REACH * (x - centre) / half)
+        return place
 
     left = 0.0 if lower is None else across(lower)
     right = WIDTH if upper is None else across(upper)
@@ -64,17 +70,17 @@ def draw_margin_bar(
         low, high = max(across(value - error), 0), min(across(value + error), WIDTH)
         whisker = f"M{low:.2f} {MIDDLE:g}H{high:.2f}M{low:.2f} 6V12M{high:.2f} 6V12"
         parts.append(f'<path d="{whisker}" stroke="{INK}" stroke-width="1"/>')
-    parts += _list_strip([across(draw) for draw in draws])
+    parts += _list_strip(across(np.array(draws)))
     parts.append(_marker(x, verdict))
     size = f'viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" height="{HEIGHT:g}"'
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(parts)}</svg>'
 
 
-def _list_strip(places: Sequence[float]) -> Iterator[str]:
+def _list_strip(places: RealArray) -> Iterator[str]:
     """Strip of a sample under the bar: columns whose darkness is their share of the largest column."""
-    counts = Counter(round(min(max(place, 0.0), WIDTH) / STRIP_WIDTH) for place in places)
-    for column, count in sorted(counts.items()):
-        x, shade = column * STRIP_WIDTH - STRIP_WIDTH / 2, max(count / max(counts.values()), 0.1)
+    columns, counts = np.unique(np.rint(np.clip(places, 0.0, WIDTH) / STRIP_WIDTH), return_counts=True)
+    for column, count in zip(columns.tolist(), counts.tolist(), strict=True):
+        x, shade = column * STRIP_WIDTH - STRIP_WIDTH / 2, max(count / counts.max(), 0.1)
         yield (
             f'<rect x="{x:g}" y="{HEIGHT - 3:g}" width="{STRIP_WIDTH:g}" height="3" fill="{INK}" '
             f'fill-opacity="{shade:.2f}"/>'
