@@ -8,6 +8,8 @@ from pantocheck.conformance.core.input_error import InputError
 LARGEST_INTEGER = 2**63 - 1
 """Largest whole number that TOML and most programs can read."""
 
+_FLOAT = frozenset((float,))
+
 
 def check_values(tree: object, where: str) -> None:
     """Check every key, text and number of nested dictionaries and lists, nested as deeply as the parser allows.
@@ -28,6 +30,8 @@ def check_values(tree: object, where: str) -> None:
                 _check_text(name, key, where)
                 waiting.append((f"{key}.{name}".lstrip("."), item))
         elif isinstance(value, list):
+            if _FLOAT.issuperset(map(type, value)) and all(map(math.isfinite, value)):
+                continue  # a curve
             waiting += [(f"{key}[{number}]", item) for number, item in enumerate(value, 1)]
         elif isinstance(value, str):
             _check_text(value, key, where)
