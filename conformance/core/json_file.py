@@ -112,7 +112,7 @@ Rounded = Annotated[float, PlainSerializer(round_significant, return_type=float)
 class RoundedModel(BaseModel):
     """Part of a JSON file; unknown keys of a newer file are ignored."""
 
-    model_config = ConfigDict(extra="ignore", frozen=True)
+    model_config = ConfigDict(extra="ignore", frozen=True, defer_build=True)
 
     def rounded(self) -> Self:
         """Same model with rounded numbers, so that values in memory and in the file are equal."""
