@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from xml.sax.saxutils import escape
+from html import escape
 
 import numpy as np
 
@@ -125,7 +125,7 @@ def write_text(
     for number, line in enumerate(lines):
         place = write_number(x), write_number(first + number * LINE_DISTANCE * size)
         turn = f' transform="rotate(-90 {place[0]} {place[1]})"' if turned else ""
-        parts.append(f'<text {style} x="{place[0]}" y="{place[1]}"{turn}>{escape(line)}</text>')
+        parts.append(f'<text {style} x="{place[0]}" y="{place[1]}"{turn}>{escape(line, quote=False)}</text>')
     return "".join(parts)
 
 
