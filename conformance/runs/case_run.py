@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from itertools import count
+from typing import TypeVar
 
 import numpy as np
 
@@ -34,6 +35,8 @@ from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
 from pantocheck.model.dynamics.passage import ForeignPantograph, FrameRequest, Frames, History, Passage
 from pantocheck.model.statics.contact_wires import touched_wires
+
+Item = TypeVar("Item")
 
 KEPT_SPANS = 1.5
 """Smallest distance behind the train with known uplift at the end of a run [spans]: the check of the support passing
@@ -116,16 +119,28 @@ def _halve_rest(progress: ShareCallback) -> Iterator[ShareCallback]:
     return map(follow, count())
 
 
-def run_start(
-    start: RunStart,
+def run_starts(
+    starts: Sequence[RunStart],
     line: DiscretisedLine,
     discretisation: Discretisation,
     uplift_forces: tuple[float, ...],
     progress: ShareCallback = ignore_progress,
-) -> Record:
-    """Simulate the passage of a case from another start; parameters as in `run_passage`."""
-    passage = replace(build_passage(start.case, line, discretisation, uplift_forces), ramp=start.ramp_s)
-    return record_passage(start.case, passage, _integrate(start.case, line, passage, uplift_forces, progress)[0])
+) -> list[Record]:
+    """Simulate the passages of a case from other starts, together if it has no FMU; parameters as in `run_passage`."""
+    passages = [
+        replace(build_passage(start.case, line, discretisation, uplift_forces), ramp=start.ramp_s) for start in starts
+    ]
+    if starts and starts[0].case.fmus:
+        histories = [
+            _integrate(start.case, line, passage, uplift_forces, progress)[0]
+            for start, passage in zip(starts, passages, strict=True)
+        ]
+    else:
+        histories = integrate_passages(line, passages, progress)
+    return [
+        record_passage(start.case, passage, history)
+        for start, passage, history in zip(starts, passages, histories, strict=True)
+    ]
 
 
 def _run_once(
@@ -273,6 +288,23 @@ def integrate_passage(
     from pantocheck.model.dynamics.simulation import simulate_passage
 
     return simulate_passage(line, passage, progress, programs)
+
+
+def integrate_passages(
+    line: DiscretisedLine, passages: Sequence[Passage], progress: ShareCallback = ignore_progress
+) -> list[History]:
+    """Simulate passages on one line together; parameters and errors as in `model.dynamics.lanes.simulate_passages`."""
+    require_core("passage simulation")
+    from pantocheck.model.dynamics.lanes import simulate_passages
+
+    return simulate_passages(line, passages, progress)
+
+
+def split_passages(line: DiscretisedLine, items: Sequence[Item]) -> list[Sequence[Item]]:
+    """Split items, each with one passage on a line, into groups that are simulated together."""
+    from pantocheck.model.dynamics.lanes import split_into_lanes
+
+    return split_into_lanes(line, items)
 
 
 def integrate_mass_drop(

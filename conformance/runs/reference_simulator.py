@@ -1,11 +1,12 @@
 """Reference simulator as a system under test, in the same process."""
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
+from itertools import islice
 from threading import Event
 from typing import Literal
 
@@ -17,7 +18,7 @@ from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.line_parameters import list_tolerance_lines
 from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
-from pantocheck.conformance.runs.case_run import run_passage, run_start
+from pantocheck.conformance.runs.case_run import run_passage, run_starts, split_passages
 from pantocheck.conformance.runs.core_requirement import COMPILATION, announce_compilation, require_core
 from pantocheck.conformance.runs.passage_film import code_film, plan_film
 from pantocheck.conformance.runs.resolution import (
@@ -42,8 +43,10 @@ OTHER_RUNS = "other meshes and starts"
 AT_REST_S = 4.0
 """Simulated time that takes as long as the static quantities of a line [s]."""
 
-Task = Callable[[ShareCallback], Delivered | None]
-"""Run of a case on another mesh or from another start."""
+Task = Callable[[ShareCallback], Sequence[Delivered]]
+"""Runs of a case on another mesh, or from other starts together."""
+StepNames = tuple[str, ...]
+"""StepNames of the steps of a task."""
 
 
 @dataclass(frozen=True)
@@ -67,26 +70,30 @@ class ReferenceSimulator:
         discretisation, steps = case.file.discretisation, _plan_steps(case)
         delivered, uplift_forces = self._run_drawn(case, steps)
         line = discretise_line(case.line, discretisation.element_m)
-        tasks: dict[str, Task] = {
-            FINE_MESH: partial(_deliver_again, case, discretisation.scale(1 / 2), uplift_forces),
-            COARSE_MESH: partial(_deliver_coarse, case, discretisation.scale(2), uplift_forces),
+        tasks: dict[StepNames, Task] = {
+            (FINE_MESH,): partial(_deliver_again, case, discretisation.scale(1 / 2), uplift_forces),
+            (COARSE_MESH,): partial(_deliver_coarse, case, discretisation.scale(2), uplift_forces),
         }
         if uplift_forces is not None:
+            named = [(name_start(number), start) for number, start in enumerate(list_other_starts(case), 1)]
+            groups = [[start] for start in named] if case.fmus else split_passages(line, named)
             tasks |= {
-                name_start(number): partial(_deliver_start, start, line, discretisation, uplift_forces)
-                for number, start in enumerate(list_other_starts(case), 1)
+                tuple(name for name, _ in group): partial(
+                    _deliver_starts, [start for _, start in group], line, discretisation, uplift_forces
+                )
+                for group in groups
             }
             tasks |= {
-                name_line(number): partial(_deliver_line, case, catenary, uplift_forces)
+                (name_line(number),): partial(_deliver_line, case, catenary, uplift_forces)
                 for number, catenary in enumerate(list_tolerance_lines(case.line), 1)
             }
         threads = 1 if case.fmus else self.threads  # the end of a process ends those that began after it
         found = dict(zip(tasks, _run_tasks(tasks, steps, threads), strict=True))
         starts, lines = (
-            tuple(run for name, run in found.items() if run is not None and name.startswith(kind))
+            tuple(run for names, runs in found.items() if names[0].startswith(kind) for run in runs)
             for kind in ("start", "line")
         )
-        refined, coarse = found[FINE_MESH], found[COARSE_MESH]
+        (refined,), coarse = found[FINE_MESH,], next(iter(found[COARSE_MESH,]), None)
         return replace(delivered, refined=refined, coarse=coarse, starts=starts, changed_lines=lines)
 
     def _run_drawn(self, case: Case, steps: StepSequence) -> tuple[Delivered, tuple[float, ...] | None]:
@@ -180,22 +187,23 @@ def name_line(number: int) -> str:
     return f"line {number}"
 
 
-def _run_tasks(tasks: Mapping[str, Task], steps: StepSequence, threads: int) -> list[Delivered | None]:
-    """Results of independent runs in their order; the time steps let other threads run."""
+def _run_tasks(tasks: Mapping[StepNames, Task], steps: StepSequence, threads: int) -> list[Sequence[Delivered]]:
+    """Results of independent tasks in their order; the time steps let other threads run."""
     if threads == 1:
-        return [task(steps.begin(name)) for name, task in tasks.items()]
+        return [task(partial(_follow, steps.begin_together(names[0], names))) for names, task in tasks.items()]
     stopped = Event()
 
-    def follow(progress: ShareCallback, share: float) -> None:
+    def follow(callbacks: Sequence[ShareCallback], share: float) -> None:
         if stopped.is_set():
             raise SimulationError("another run of the case has failed, or the user has stopped the run")
-        progress(share)
+        _follow(callbacks, share)
 
-    callbacks = steps.begin_together(OTHER_RUNS, list(tasks))
+    callbacks = iter(steps.begin_together(OTHER_RUNS, [name for names in tasks for name in names]))
     with ThreadPoolExecutor(threads) as pool:
         try:
-            runs = zip(tasks.values(), callbacks, strict=True)
-            futures = [pool.submit(task, partial(follow, progress)) for task, progress in runs]
+            futures = [
+                pool.submit(task, partial(follow, list(islice(callbacks, len(names))))) for names, task in tasks.items()
+            ]
             for future in wait(futures, return_when=FIRST_EXCEPTION).done:
                 future.result()
             return [future.result() for future in futures]
@@ -205,39 +213,45 @@ def _run_tasks(tasks: Mapping[str, Task], steps: StepSequence, threads: int) -> 
             raise
 
 
+def _follow(callbacks: Sequence[ShareCallback], share: float) -> None:
+    """Report the completed share of a task for each of its steps."""
+    for callback in callbacks:
+        callback(share)
+
+
 def _deliver_line(
     case: Case, catenary: Catenary, uplift_forces: tuple[float, ...], progress: ShareCallback
-) -> Delivered:
+) -> Sequence[Delivered]:
     """Run of a case on a changed line, at the uplift forces of the line as stated."""
     discretisation = case.file.discretisation
     line = discretise(catenary, discretisation.element_m)
-    return Delivered(run_passage(case, line, discretisation, uplift_forces, progress).record)
+    return (Delivered(run_passage(case, line, discretisation, uplift_forces, progress).record),)
 
 
 def _deliver_again(
     case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...] | None, progress: ShareCallback
-) -> Delivered:
-    return _deliver(case, discretisation, uplift_forces, progress)[0]
+) -> Sequence[Delivered]:
+    return (_deliver(case, discretisation, uplift_forces, progress)[0],)
 
 
 def _deliver_coarse(
     case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...] | None, progress: ShareCallback
-) -> Delivered | None:
-    """Result on a coarse mesh; None if it is too coarse to converge: the uncertainty follows from two meshes."""
+) -> Sequence[Delivered]:
+    """Result on a coarse mesh; none if it is too coarse to converge: the uncertainty follows from two meshes."""
     try:
         return _deliver_again(case, discretisation, uplift_forces, progress)
     except SimulationError:
-        return None
+        return ()
 
 
-def _deliver_start(
-    start: RunStart,
+def _deliver_starts(
+    starts: Sequence[RunStart],
     line: DiscretisedLine,
     discretisation: Discretisation,
     uplift_forces: tuple[float, ...],
     progress: ShareCallback,
-) -> Delivered:
-    return Delivered(run_start(start, line, discretisation, uplift_forces, progress))
+) -> Sequence[Delivered]:
+    return [Delivered(record) for record in run_starts(starts, line, discretisation, uplift_forces, progress)]
 
 
 def _deliver(

@@ -3,7 +3,7 @@
 import hashlib
 from pathlib import Path
 
-SOURCES = tuple(Path(__file__).with_name(name) for name in ("time_step.c", "time_step_vectors.h"))
+SOURCES = tuple(Path(__file__).with_name(name) for name in ("time_step.c", "time_step_vectors.h", "time_step_lanes.h"))
 """Files of the core; the first one is compiled, and includes the others."""
 LINE_SOURCES = (Path(__file__).with_name("line_fmu.c"), *SOURCES)
 """Files of a line as FMU; the first one is compiled, and includes the others."""

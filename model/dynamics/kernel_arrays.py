@@ -170,6 +170,7 @@ def _build_line_arrays(line: DiscretisedLine, time_step: float) -> KernelArrays:
     laws = (tensions, build_distributed_laws(line.stretches, terms))
     law = ScalarLaw(*(np.concatenate(parts) for parts in zip(*laws, strict=True)))
     compliance = _compliance(connectors, distributed, layout, line.mesh.rows)
+    beyond = Factor(*(np.pad(part, ((0, 0), (0, layout.width - stations), (0, 0))) for part in factor))
     return KernelArrays(
         time_step=time_step,
         layout=layout,
@@ -179,7 +180,7 @@ def _build_line_arrays(line: DiscretisedLine, time_step: float) -> KernelArrays:
         connectors=connectors,
         distributed=distributed,
         forces=build_scalar_forces(law, compliance, time_step),
-        contact=build_contact_arrays(line, factor, time_step, half_width),
+        contact=build_contact_arrays(line, beyond, time_step, half_width),
         load=Load(0, 0),
     )
 

@@ -170,7 +170,7 @@ static int advance(Model *m, double time, double length)
         }
     }
     values[TIME] = time + length;
-    record(&a->kernel, &a->motion, &a->train, &a->work, &a->recording, 0);
+    record(&a->kernel, &a->kernel.window, &a->motion, &a->train, &a->work, &a->recording, 0);
     write_outputs(a);
     return OK;
 }

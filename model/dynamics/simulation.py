@@ -48,7 +48,7 @@ def simulate_passage(
         ImpossiblePassage: There is no pantograph, or one would leave the line.
         DidNotConverge: The forces of a time step did not converge.
     """
-    _check_passage(line, passage)
+    check_passage(line, passage)
     pantographs, programs = passage.pantographs, programs or [None] * len(passage.pantographs)
     pairs = zip(pantographs, programs, strict=True)
     moved = tuple(pantograph if program is None else build_interface(pantograph) for pantograph, program in pairs)
@@ -109,7 +109,7 @@ def _hide_unknown(
     return replace(frames, displacement=np.where(hidden, np.nan, frames.displacement))
 
 
-def _check_passage(line: DiscretisedLine, passage: Passage) -> None:
+def check_passage(line: DiscretisedLine, passage: Passage) -> None:
     """Require a pantograph, and positions of all pantographs on the line at all times."""
     if not passage.pantographs:
         raise ImpossiblePassage("the passage has no pantograph; at least one is needed")

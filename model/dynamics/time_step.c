@@ -34,6 +34,11 @@ typedef struct { uint8_t *at; int64_t n[4]; } Flags;
 #define AT3(a, i, j, k) ((a).at[((i) * (a).n[1] + (j)) * (a).n[2] + (k)])
 #define AT4(a, i, j, k, l) ((a).at[(((i) * (a).n[1] + (j)) * (a).n[2] + (k)) * (a).n[3] + (l)])
 
+/* Value of a plane, row and station of a motion, whose runs are interleaved; a run alone has one lane. */
+#define STATION(a, i, j, k) ((a).at[(((i) * (a).n[1] + (j)) * (a).n[2] + (k)) * (a).n[3]])
+/* Scalar n of a run. */
+#define SCALAR(a, n_) ((a).at[(n_) * (a).n[1]])
+
 typedef struct { int64_t stations, width; } Layout;
 typedef struct {
     Array position;
@@ -135,42 +140,6 @@ static double larger(double a, double b) { return a > b ? a : b; }
 static double maximum(double a, double b) { return a >= b || isnan(a) ? a : b; } /* NaN if either is NaN */
 static int64_t whole_vectors(int64_t station) { return station & ~(int64_t)(LANES - 1); } /* rounds down, also below 0 */
 
-/* ----------------------------------------------------------------------------------------------------------- vectors
- *
- * The functions of vectors exist for registers of four and of two numbers; a call takes the widest registers that the
- * processor has, up to WIDEST. Their results have the same bits. Registers of eight numbers are not faster.
- */
-
-#define INLINE static inline __attribute__((always_inline))
-#define JOIN(name, width) name##_##width
-#define NAMED(name, width) JOIN(name, width)
-#define WIDE(name) NAMED(name, WIDTH)
-#ifndef WIDEST
-#define WIDEST 4
-#endif
-
-typedef struct { double *force; const double *link, *inverse; } Panel;
-
-#if defined(__x86_64__) && !defined(__clang__)
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#define WIDTH 4
-#include "time_step_vectors.h"
-#undef WIDTH
-#pragma GCC pop_options
-#define CHOOSE(name) (WIDEST >= 4 && __builtin_cpu_supports("avx2") ? name##_4 : name##_2)
-#else
-#define CHOOSE(name) name##_2
-#endif
-#define WIDTH 2
-#include "time_step_vectors.h"
-#undef WIDTH
-
-static double inner_product(const double *pair, int64_t size, const double *w, const double *r)
-{
-    return CHOOSE(inner_product)(pair, size, w, r);
-}
-
 /* ----------------------------------------------------------------------------------------- search, window, extents */
 
 /* First index from `first` on, before `end`, of increasing values that is not below a value; else `end`. */
@@ -205,7 +174,7 @@ static int moves(const Array *w, int64_t first, int64_t last)
 {
     for (int64_t b = 0; b < w->n[1]; b++)
         for (int64_t s = first; s <= last; s++)
-            if (!(fabs(AT3(*w, 1, b, s)) <= QUIET))
+            if (!(fabs(STATION(*w, 1, b, s)) <= QUIET))
                 return 1;
     return 0;
 }
@@ -261,13 +230,79 @@ static Window active_run(const Indices *station, const Indices *run, int64_t k, 
     return (Window){first, search(station->at, first, end, window.last + 1)};
 }
 
+/* Windows of the runs of some lanes: their hull and their intersection; first and last station of each; whether the
+ * forces of each still change. A run that does not move has no station, and does not count for the intersection. */
+typedef struct { Window all, common; int64_t first[LANES], last[LANES], running[LANES]; } Windows;
+
+/* ----------------------------------------------------------------------------------------------------------- vectors
+ *
+ * The functions of vectors exist for registers of four and of two numbers; a call takes the widest registers that the
+ * processor has, up to WIDEST. Their results have the same bits. Registers of eight numbers are not faster.
+ */
+
+#define INLINE static inline __attribute__((always_inline))
+#define JOIN(name, width) name##_##width
+#define NAMED(name, width) JOIN(name, width)
+#define WIDE(name) NAMED(name, WIDTH)
+#ifndef WIDEST
+#define WIDEST 8
+#endif
+
+typedef struct { double *force; const double *link, *inverse; } Panel;
+
+#if defined(__x86_64__) && !defined(__clang__)
+#pragma GCC push_options
+#pragma GCC target("avx512f")
+#define WIDTH 8
+#include "time_step_vectors.h"
+#undef WIDTH
+#pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#define WIDTH 4
+#include "time_step_vectors.h"
+#undef WIDTH
+#pragma GCC pop_options
+#define CHOOSE(name) (WIDEST >= 4 && __builtin_cpu_supports("avx2") ? name##_4 : name##_2)
+#else
+#define CHOOSE(name) name##_2
+#endif
+#define WIDTH 2
+#include "time_step_vectors.h"
+#undef WIDTH
+#define WIDTH 1
+#include "time_step_vectors.h"
+#undef WIDTH
+
+static double inner_product(const double *pair, int64_t size, const double *w, const double *r)
+{
+    return CHOOSE(inner_product)(pair, size, w, r);
+}
+
+/* The same for fields of one of several runs, whose values are some numbers apart, with the same bits. */
+static double strided_product(const double *pair, int64_t size, const double *w, const double *r, int64_t stride)
+{
+    double product[LANES] = {0.0}, other[LANES] = {0.0};
+    if (stride == 1)
+        return inner_product(pair, size, w, r);
+    for (int64_t i = 0; i < size; i += LANES)
+        for (int k = 0; k < LANES; k++) {
+            product[k] += pair[i + k] * w[(i + k) * stride];
+            other[k] += pair[size + i + k] * r[(i + k) * stride];
+        }
+    for (int k = 0; k < LANES; k++)
+        product[k] += other[k];
+    return ((product[0] + product[4]) + (product[2] + product[6])) +
+           ((product[1] + product[5]) + (product[3] + product[7]));
+}
+
 /* ------------------------------------------------------------------------------------------------------------ motion */
 
 static void hold(double dt, const Array *field, int64_t row, int64_t station)
 {
-    AT3(*field, 0, row, station) += dt * dt / 4 * AT3(*field, 2, row, station);
-    AT3(*field, 1, row, station) = 0.0;
-    AT3(*field, 2, row, station) = 0.0;
+    STATION(*field, 0, row, station) += dt * dt / 4 * STATION(*field, 2, row, station);
+    STATION(*field, 1, row, station) = 0.0;
+    STATION(*field, 2, row, station) = 0.0;
 }
 
 static void hold_passed_stations(double dt, const Motion *motion, Window window)
@@ -298,21 +333,6 @@ static void predict_wires(double dt, const WireArrays *wires, const Motion *moti
                          wires->elements.at + wires->element_row.at[row] * ENTRIES * width,
                          motion->w.at + row * width, motion->r.at + row * width, width, plane, active.first,
                          active.last);
-    }
-}
-
-static void add_lumped_forces(const WireArrays *wires, const Motion *motion, Window window)
-{
-    double *w = motion->w.at;
-    int64_t plane = motion->w.n[1] * motion->w.n[2];
-    for (int64_t k = 0; k < wires->lumped_run.n[0] - 1; k++) {
-        Window active = active_run(&wires->lumped_station, &wires->lumped_run, k, window);
-        for (int64_t n = active.first; n < active.last; n++) {
-            int64_t at = wires->lumped_index.at[n];
-            double elastic = wires->lumped_stiffness.at[n] * w[at];
-            double viscous = wires->lumped_damping.at[n] * w[at + plane];
-            w[at + 2 * plane] -= elastic + viscous;
-        }
     }
 }
 
@@ -407,34 +427,9 @@ static double solve_wires(const PanelFactor *factor, const Extents *extents, Win
 
 /* ------------------------------------------------------------------------------------- connectors, distributed forces */
 
-static void predict_connectors(const ConnectorArrays *connectors, const ScalarForces *forces, const Motion *motion,
-                               const ScalarWorkspace *work, Window window)
+static void accelerate_nodes(const NodeArrays *nodes, const Motion *motion, const Array *node, Window window)
 {
-    const ScalarLaw *law = &forces->law;
-    int64_t plane = motion->w.n[1] * motion->w.n[2], ends = connectors->end_index.n[1];
-    double *w = motion->w.at;
-    for (int64_t k = 0; k < connectors->run.n[0] - 1; k++) {
-        Window active = active_run(&connectors->station, &connectors->run, k, window);
-        for (int64_t n = active.first; n < active.last; n++) {
-            double change = motion->force.at[n] - law->preload.at[n], elongation = 0.0, rate = 0.0;
-            for (int64_t e = 0; e < ends; e++) {
-                int64_t at = AT2(connectors->end_index, n, e);
-                double c = AT2(connectors->end_coefficient, n, e);
-                elongation += c * w[at];
-                rate += c * w[at + plane];
-                w[at + 2 * plane] -= c * change;
-            }
-            work->predicted.at[n] = law->preload.at[n] + law->stiffness.at[n] * elongation + law->damping.at[n] * rate;
-            work->change.at[n] = 0.0;
-        }
-    }
-}
-
-static void accelerate_connectors(const ConnectorArrays *connectors, const Motion *motion, const Array *node,
-                                  const ScalarWorkspace *work, Window window)
-{
-    const NodeArrays *nodes = &connectors->nodes;
-    int64_t width = motion->w.n[2], size = nodes->column.n[2], ends = connectors->end_node.n[1];
+    int64_t width = motion->w.n[2], size = nodes->column.n[2];
     for (int64_t row = 0; row < nodes->first.n[0] - 1; row++) {
         int64_t first = search(nodes->station.at, nodes->first.at[row], nodes->first.at[row + 1], window.first);
         int64_t end = search(nodes->station.at, first, nodes->first.at[row + 1], window.last + 1);
@@ -443,28 +438,6 @@ static void accelerate_connectors(const ConnectorArrays *connectors, const Motio
             int64_t at = plane + nodes->column_start.at[j];
             node->at[j] = inner_product(nodes->column.at + 2 * j * size, size, motion->w.at + at, motion->r.at + at);
         }
-    }
-    for (int64_t k = 0; k < connectors->run.n[0] - 1; k++) {
-        Window active = active_run(&connectors->station, &connectors->run, k, window);
-        for (int64_t n = active.first; n < active.last; n++) {
-            double acceleration = 0.0;
-            for (int64_t e = 0; e < ends; e++)
-                acceleration += AT2(connectors->end_coefficient, n, e) * node->at[AT2(connectors->end_node, n, e)];
-            work->acceleration.at[n] = acceleration;
-        }
-    }
-}
-
-static void load_connectors(const ConnectorArrays *connectors, const Motion *motion, const ScalarWorkspace *work,
-                            Window window)
-{
-    int64_t plane = motion->w.n[1] * motion->w.n[2], ends = connectors->end_index.n[1];
-    for (int64_t k = 0; k < connectors->run.n[0] - 1; k++) {
-        Window active = active_run(&connectors->station, &connectors->run, k, window);
-        for (int64_t n = active.first; n < active.last; n++)
-            for (int64_t e = 0; e < ends; e++)
-                motion->w.at[AT2(connectors->end_index, n, e) + 2 * plane] -=
-                    AT2(connectors->end_coefficient, n, e) * work->change.at[n];
     }
 }
 
@@ -541,29 +514,6 @@ static void load_distributed(const DistributedArrays *distributed, const Motion 
         Strip strip = strip_of(distributed, motion, z);
         load_strip(distributed, motion, strip, -work->change.at[strip.force], window);
     }
-}
-
-static double sweep_forces(const ScalarForces *forces, const ScalarWorkspace *work, double *force, int64_t first,
-                           int64_t end)
-{
-    double largest = 0.0;
-    for (int64_t n = first; n < end; n++) {
-        double old = force[n];
-        double new = work->predicted.at[n] + forces->per_acceleration.at[n] * work->acceleration.at[n] +
-                     forces->self_compliance.at[n] * old;
-        new *= forces->settling.at[n];
-        if (forces->law.unilateral.at[n] && new < 0.0)
-            new = 0.0;
-        double change = new - old;
-        if (fabs(change) > NEGLIGIBLE_FORCE) {
-            force[n] = new;
-            work->change.at[n] += change;
-            for (int64_t i = forces->first.at[n]; i < forces->first.at[n + 1]; i++)
-                work->acceleration.at[forces->other.at[i]] -= forces->compliance.at[i] * change;
-        }
-        largest = maximum(largest, fabs(change));
-    }
-    return largest;
 }
 
 /* ----------------------------------------------------------------------------------------------- irregularity, joints */
@@ -670,11 +620,11 @@ static double lateral_motion(const ContactArrays *contact, const Motion *motion,
         double n = i == 0 ? (1 - s) * (1 - s) * (1 + 2 * s) : s * s * (3 - 2 * s);
         double m = h * s * (1 - s) * (1 - i - s);
         double by_w = (12 * i - 6) * s * (1 - s) / h, by_r = (1 - i - s) * (1 - i - 3 * s + 2 * i);
-        double w = AT3(contact->rest, row, at, 0) + AT3(motion->w, 0, row, at);
-        double r = AT3(contact->rest, row, at, 1) + AT3(motion->r, 0, row, at);
+        double w = AT3(contact->rest, row, at, 0) + STATION(motion->w, 0, row, at);
+        double r = AT3(contact->rest, row, at, 1) + STATION(motion->r, 0, row, at);
         y += n * w + m * r;
-        *rate += train->speed.at[0] * (by_w * w + by_r * r) + n * AT3(motion->w, 1, row, at) +
-                 m * AT3(motion->r, 1, row, at);
+        *rate += train->speed.at[0] * (by_w * w + by_r * r) + n * STATION(motion->w, 1, row, at) +
+                 m * STATION(motion->r, 1, row, at);
     }
     return y;
 }
@@ -709,9 +659,9 @@ static double closing_rate(const ContactArrays *contact, const Motion *motion, c
         /* Derivatives of the Hermite functions along the track. */
         int64_t at = place.element + i;
         double by_w = (12 * i - 6) * s * (1 - s) / h, by_r = (1 - i - s) * (1 - i - 3 * s + 2 * i);
-        slope += by_w * (AT3(contact->rest, row, at, 0) + AT3(motion->w, 0, row, at));
-        slope += by_r * (AT3(contact->rest, row, at, 1) + AT3(motion->r, 0, row, at));
-        rate -= shape[2 * i] * AT3(motion->w, 1, row, at) + shape[2 * i + 1] * AT3(motion->r, 1, row, at);
+        slope += by_w * (AT3(contact->rest, row, at, 0) + STATION(motion->w, 0, row, at));
+        slope += by_r * (AT3(contact->rest, row, at, 1) + STATION(motion->r, 0, row, at));
+        rate -= shape[2 * i] * STATION(motion->w, 1, row, at) + shape[2 * i + 1] * STATION(motion->r, 1, row, at);
     }
     for (int64_t i = 0; i < unknowns; i++)
         rate += AT3(work->head, c, wire, i) * AT3(train->z, 1, owner, i);
@@ -742,10 +692,10 @@ static void predict_contact(const ContactArrays *contact, const Motion *motion, 
     AT2(work->first_guess, c, wire) = force;
     for (int i = 0; i < 2; i++) {
         int64_t at = place.element + i;
-        height += n[2 * i] * (AT3(contact->rest, row, at, 0) + AT3(motion->w, 0, row, at));
-        height += n[2 * i + 1] * (AT3(contact->rest, row, at, 1) + AT3(motion->r, 0, row, at));
-        AT3(motion->w, 2, row, at) += n[2 * i] * force;
-        AT3(motion->r, 2, row, at) += n[2 * i + 1] * force;
+        height += n[2 * i] * (AT3(contact->rest, row, at, 0) + STATION(motion->w, 0, row, at));
+        height += n[2 * i + 1] * (AT3(contact->rest, row, at, 1) + STATION(motion->r, 0, row, at));
+        STATION(motion->w, 2, row, at) += n[2 * i] * force;
+        STATION(motion->r, 2, row, at) += n[2 * i + 1] * force;
     }
     double flexibility =
         residual_flexibility(&AT3(contact->flexibility, row, place.element, 0), contact->flexibility.n[2], s);
@@ -909,13 +859,14 @@ static void accelerate_contacts(const KernelArrays *kernel, const Motion *motion
                                 Window window)
 {
     const ContactArrays *contact = &kernel->contact;
-    int64_t strips = work->element.n[0], size = work->response.n[3], rows = motion->w.n[1], width = motion->w.n[2];
+    int64_t strips = work->element.n[0], size = work->response.n[3];
     for (int64_t c = 0; c < strips; c++)
         for (int64_t n = 0; n < work->number_above.at[c]; n++) {
             int64_t wire = AT2(work->above, c, n);
-            int64_t at = (2 * rows + contact->wires.row.at[wire]) * width + work->start.at[c];
+            const double *w = &STATION(motion->w, 2, contact->wires.row.at[wire], work->start.at[c]);
+            const double *r = &STATION(motion->r, 2, contact->wires.row.at[wire], work->start.at[c]);
             AT2(work->wire_acceleration, c, wire) =
-                inner_product(&AT4(work->response, c, wire, 0, 0), size, motion->w.at + at, motion->r.at + at);
+                strided_product(&AT4(work->response, c, wire, 0, 0), size, w, r, motion->w.n[3]);
             for (int64_t other = 0; other < strips; other++)
                 AT3(work->wire_compliance, c, other, wire) = at_contact(work, c, other, wire);
             list_near_connectors(contact, &kernel->connectors, work, c, wire, window);
@@ -953,7 +904,7 @@ static double sweep_contacts(double dt, const Train *train, const ContactWorkspa
                 approach -= AT3(work->wire_compliance, c, other, wire) *
                             (AT2(train->contact, other, wire) - AT2(work->first_guess, other, wire));
             for (int64_t i = 0; i < near; i++)
-                approach += AT3(work->influence, c, wire, i) * scalar->change.at[AT3(work->near, c, wire, i)];
+                approach += AT3(work->influence, c, wire, i) * SCALAR(scalar->change, AT3(work->near, c, wire, i));
             double gain = k * dt * dt / 4 + damper * dt / 2;
             double held = k * AT2(work->overlap, c, wire) + damper * AT2(work->rate, c, wire);
             double compliance = gain * (AT2(work->head_compliance, c, wire) + AT3(work->wire_compliance, c, c, wire));
@@ -966,7 +917,7 @@ static double sweep_contacts(double dt, const Train *train, const ContactWorkspa
             if (fabs(change) > NEGLIGIBLE_FORCE) {
                 AT2(train->contact, c, wire) = force;
                 for (int64_t i = 0; i < near; i++)
-                    scalar->acceleration.at[AT3(work->near, c, wire, i)] += AT3(work->influence, c, wire, i) * change;
+                    SCALAR(scalar->acceleration, AT3(work->near, c, wire, i)) += AT3(work->influence, c, wire, i) * change;
                 for (int64_t i = 0; i < unknowns; i++)
                     for (int64_t j = 0; j < unknowns; j++)
                         AT3(train->z, 2, p, i) -=
@@ -986,8 +937,8 @@ static void load_contacts(const ContactArrays *contact, const Motion *motion, co
             int64_t wire = AT2(work->above, c, number), e = work->element.at[c], row = contact->wires.row.at[wire];
             double change = AT2(train->contact, c, wire) - AT2(work->first_guess, c, wire);
             for (int i = 0; i < 2; i++) {
-                AT3(motion->w, 2, row, e + i) += AT3(work->shape, c, wire, 2 * i) * change;
-                AT3(motion->r, 2, row, e + i) += AT3(work->shape, c, wire, 2 * i + 1) * change;
+                STATION(motion->w, 2, row, e + i) += AT3(work->shape, c, wire, 2 * i) * change;
+                STATION(motion->r, 2, row, e + i) += AT3(work->shape, c, wire, 2 * i + 1) * change;
             }
         }
 }
@@ -1005,19 +956,20 @@ static void correct_train(double dt, const Train *train)
 
 /* Sweep over contact forces and scalar forces until none of them changes; zero when they do not converge. */
 static int64_t settle_forces(const KernelArrays *kernel, const Motion *motion, const Train *train,
-                             const Workspace *work, Window window)
+                             const Workspace *work, const Windows *windows)
 {
     const ConnectorArrays *connectors = &kernel->connectors;
+    const int64_t *station = connectors->station.at;
     int64_t forces = motion->force.n[0], distributed = forces - kernel->distributed.number;
     double *force = motion->force.at;
     for (int64_t sweeps = 1; sweeps <= MAX_SWEEPS; sweeps++) {
         double largest = sweep_contacts(kernel->time_step, train, &work->contact, &work->scalar);
         largest = maximum(largest, sweep_joints(train, &work->contact));
         for (int64_t k = 0; k < connectors->run.n[0] - 1; k++) {
-            Window active = active_run(&connectors->station, &connectors->run, k, window);
-            largest = maximum(largest, sweep_forces(&kernel->forces, &work->scalar, force, active.first, active.last));
+            Window active = active_run(&connectors->station, &connectors->run, k, windows->all);
+            sweep_forces_1(&kernel->forces, &work->scalar, force, station, active.first, active.last, windows, &largest);
         }
-        largest = maximum(largest, sweep_forces(&kernel->forces, &work->scalar, force, distributed, forces));
+        sweep_forces_1(&kernel->forces, &work->scalar, force, station, distributed, forces, windows, &largest);
         /* This comparison is false for NaN, too. */
         if (largest < FORCE_TOLERANCE)
             return sweeps;
@@ -1030,23 +982,158 @@ static int64_t step(const KernelArrays *kernel, const Motion *motion, const Trai
 {
     double dt = kernel->time_step;
     Window window = active_window(&kernel->window, train, motion);
+    Windows windows = {.all = window, .running = {1}};
     hold_passed_stations(dt, motion, window);
     predict_wires(dt, &kernel->wires, motion, window);
-    add_lumped_forces(&kernel->wires, motion, window);
-    predict_connectors(&kernel->connectors, &kernel->forces, motion, &work->scalar, window);
+    add_lumped_forces_1(&kernel->wires, motion, &windows);
+    predict_connectors_1(&kernel->connectors, &kernel->forces, motion, &work->scalar, &windows);
     predict_distributed(&kernel->distributed, &kernel->forces, motion, &work->scalar, window);
     predict_train(&kernel->contact, motion, train, &work->contact);
-    AT3(motion->w, 2, kernel->load.row, kernel->load.station) += motion->load.at[0];
-    accelerate_connectors(&kernel->connectors, motion, &work->node, &work->scalar, window);
+    STATION(motion->w, 2, kernel->load.row, kernel->load.station) += motion->load.at[0];
+    accelerate_nodes(&kernel->connectors.nodes, motion, &work->node, window);
+    accelerate_ends_1(&kernel->connectors, &work->node, &work->scalar, &windows);
     accelerate_distributed(&kernel->distributed, motion, &work->scalar, window);
     accelerate_contacts(kernel, motion, &work->contact, window);
-    int64_t sweeps = settle_forces(kernel, motion, train, work, window);
-    load_connectors(&kernel->connectors, motion, &work->scalar, window);
+    int64_t sweeps = settle_forces(kernel, motion, train, work, &windows);
+    load_connectors_1(&kernel->connectors, motion, &work->scalar, &windows);
     load_distributed(&kernel->distributed, motion, &work->scalar, window);
     load_contacts(&kernel->contact, motion, train, &work->contact);
     double accelerated = solve_wires(&kernel->panels, &kernel->wires.extents, window, motion, &work->panels);
     correct_train(dt, train);
     return isnan(accelerated) ? 0 : sweeps;
+}
+
+/* Run in a lane: its limits of the window, motion in all lanes, and train; it moves from step `begin` on. */
+typedef struct {
+    WindowArrays window;
+    Motion motion;
+    Train train;
+    ContactWorkspace contact;
+    Recording recording;
+    int64_t begin;
+} Lane;
+
+static int lanes_of_vectors(void)
+{
+#if defined(__x86_64__) && !defined(__clang__)
+    if (WIDEST >= 8 && __builtin_cpu_supports("avx512f"))
+        return 8;
+    return WIDEST >= 4 && __builtin_cpu_supports("avx2") ? 4 : 2;
+#else
+    return 2;
+#endif
+}
+
+#if defined(__x86_64__) && !defined(__clang__)
+#define IN_LANES(lanes, name, ...)                                                                                     \
+    ((lanes) == 8 ? name##_8(__VA_ARGS__) : (lanes) == 4 ? name##_4(__VA_ARGS__) : name##_2(__VA_ARGS__))
+#else
+#define IN_LANES(lanes, name, ...) name##_2(__VA_ARGS__)
+#endif
+
+/* Add the window of a run to those of all. */
+static void add_window(Windows *windows, int lane, Window window)
+{
+    int first = windows->all.first > windows->all.last;
+    windows->first[lane] = window.first;
+    windows->last[lane] = window.last;
+    if (window.first > window.last)
+        return;
+    windows->all.first = first ? window.first : least(windows->all.first, window.first);
+    windows->all.last = first ? window.last : most(windows->all.last, window.last);
+    windows->common.first = first ? window.first : most(windows->common.first, window.first);
+    windows->common.last = first ? window.last : least(windows->common.last, window.last);
+}
+
+/* Windows of all runs on one wire; without a common station, their intersection begins after their hull. */
+static Windows clip_windows(const Extents *extents, int64_t n, const Windows *windows, int lanes)
+{
+    Windows clipped = {.all = {0, -1}};
+    for (int l = 0; l < lanes; l++)
+        add_window(&clipped, l, clip_extent(extents, n, (Window){windows->first[l], windows->last[l]}));
+    if (clipped.common.first > clipped.common.last)
+        clipped.common.first = clipped.all.last + 1;
+    return clipped;
+}
+
+/* Advance the runs of all lanes by one step; `settle_forces` and `step` in lanes. Returns the number of sweeps. */
+static int64_t step_lanes(const KernelArrays *kernel, const Lane *lane, const Workspace *work, int64_t n)
+{
+    const ConnectorArrays *connectors = &kernel->connectors;
+    const Extents *extents = &kernel->wires.extents;
+    const Motion *all = &lane[0].motion;
+    int lanes = (int)all->w.n[3];
+    int64_t width = all->w.n[2], plane = all->w.n[1] * width, sweeps = 0;
+    double dt = kernel->time_step, largest[LANES] = {0.0}, total[LANES] = {0.0};
+    Windows windows = {.all = {0, -1}};
+    for (int l = 0; l < lanes; l++) {
+        Window window = {0, -1};
+        if (n >= lane[l].begin) {
+            window = active_window(&lane[l].window, &lane[l].train, &lane[l].motion);
+            hold_passed_stations(dt, &lane[l].motion, window);
+        }
+        add_window(&windows, l, window);
+        windows.running[l] = -(window.first <= window.last);
+    }
+    for (int64_t k = 0; k < extents->row.n[0]; k++) {
+        int64_t row = extents->row.at[k];
+        Windows clipped = clip_windows(extents, k, &windows, lanes);
+        if (clipped.all.first <= clipped.all.last)
+            IN_LANES(lanes, predict_wire_lanes, dt, kernel->wires.stiffness_coefficient.at[row],
+                     kernel->wires.elements.at + kernel->wires.element_row.at[row] * ENTRIES * width,
+                     all->w.at + row * width * lanes, all->r.at + row * width * lanes, width, plane, &clipped);
+    }
+    IN_LANES(lanes, add_lumped_forces, &kernel->wires, all, &windows);
+    IN_LANES(lanes, predict_connectors, connectors, &kernel->forces, all, &work->scalar, &windows);
+    for (int l = 0; l < lanes; l++)
+        if (windows.running[l])
+            predict_train(&kernel->contact, &lane[l].motion, &lane[l].train, &lane[l].contact);
+    for (int64_t row = 0; row < connectors->nodes.first.n[0] - 1; row++)
+        IN_LANES(lanes, accelerate_nodes, &connectors->nodes, all, &work->node, row, windows.all);
+    IN_LANES(lanes, accelerate_ends, connectors, &work->node, &work->scalar, &windows);
+    for (int l = 0; l < lanes; l++)
+        if (windows.running[l])
+            accelerate_contacts(kernel, &lane[l].motion, &lane[l].contact,
+                                (Window){windows.first[l], windows.last[l]});
+    int left = 1;
+    for (; left && sweeps < MAX_SWEEPS; sweeps++) {
+        for (int l = 0; l < lanes; l++)
+            if (windows.running[l]) {
+                ScalarWorkspace scalar = work->scalar;
+                scalar.change.at += l;
+                scalar.acceleration.at += l;
+                largest[l] = sweep_contacts(dt, &lane[l].train, &lane[l].contact, &scalar);
+                largest[l] = maximum(largest[l], sweep_joints(&lane[l].train, &lane[l].contact));
+            }
+        for (int64_t k = 0; k < connectors->run.n[0] - 1; k++) {
+            Window active = active_run(&connectors->station, &connectors->run, k, windows.all);
+            IN_LANES(lanes, sweep_forces, &kernel->forces, &work->scalar, all->force.at, connectors->station.at,
+                     active.first, active.last, &windows, largest);
+        }
+        left = 0;
+        for (int l = 0; l < lanes; l++) {
+            if (largest[l] < FORCE_TOLERANCE)
+                windows.running[l] = 0;
+            left |= windows.running[l] != 0;
+        }
+    }
+    IN_LANES(lanes, load_connectors, connectors, all, &work->scalar, &windows);
+    for (int l = 0; l < lanes; l++)
+        if (windows.first[l] <= windows.last[l])
+            load_contacts(&kernel->contact, &lane[l].motion, &lane[l].train, &lane[l].contact);
+    for (int64_t k = 0; k < extents->row.n[0]; k++) {
+        int64_t at = (2 * plane + extents->row.at[k] * width) * lanes;
+        Windows clipped = clip_windows(extents, k, &windows, lanes);
+        if (clipped.all.first <= clipped.all.last)
+            IN_LANES(lanes, solve_wire_lanes, &kernel->panels, &kernel->contact.factor, extents->row.at[k],
+                     all->w.at + at, all->r.at + at, &clipped, total);
+    }
+    for (int l = 0; l < lanes; l++) {
+        if (windows.first[l] <= windows.last[l])
+            correct_train(dt, &lane[l].train);
+        left |= isnan(total[l]);
+    }
+    return left ? 0 : sweeps;
 }
 
 /* Height of strip c at the lateral positions of its wires above that below the axis, times their forces [N m]. */
@@ -1063,8 +1150,8 @@ static double rise_at_wires(const Train *train, const ContactWorkspace *contact,
     return rise;
 }
 
-static void record(const KernelArrays *kernel, const Motion *motion, const Train *train, const Workspace *work,
-                   const Recording *recording, int64_t n)
+static void record(const KernelArrays *kernel, const WindowArrays *limits, const Motion *motion, const Train *train,
+                   const Workspace *work, const Recording *recording, int64_t n)
 {
     const ConnectorArrays *connectors = &kernel->connectors;
     double dt = kernel->time_step;
@@ -1081,17 +1168,17 @@ static void record(const KernelArrays *kernel, const Motion *motion, const Train
     }
     for (int64_t u = 0; u < recording->row.n[0]; u++) {
         int64_t b = recording->row.at[u], s = recording->station.at[u];
-        double a = AT3(motion->w, 2, b, s);
-        AT3(recording->motion, n, u, 0) = AT3(motion->w, 0, b, s) + dt * dt / 4 * a;
-        AT3(recording->motion, n, u, 1) = AT3(motion->w, 1, b, s) + dt / 2 * a;
+        double a = STATION(motion->w, 2, b, s);
+        AT3(recording->motion, n, u, 0) = STATION(motion->w, 0, b, s) + dt * dt / 4 * a;
+        AT3(recording->motion, n, u, 1) = STATION(motion->w, 1, b, s) + dt / 2 * a;
         AT3(recording->motion, n, u, 2) = a;
     }
     int64_t slack = 0;
-    Window window = active_window(&kernel->window, train, motion);
+    Window window = active_window(limits, train, motion);
     for (int64_t k = 0; k < connectors->run.n[0] - 1; k++) {
         Window active = active_run(&connectors->station, &connectors->run, k, window);
         for (int64_t c = active.first; c < active.last; c++)
-            slack += kernel->forces.law.unilateral.at[c] && motion->force.at[c] == 0.0;
+            slack += kernel->forces.law.unilateral.at[c] && SCALAR(motion->force, c) == 0.0;
     }
     recording->slack.at[n] = slack;
 }
@@ -1132,10 +1219,51 @@ EXPORT double pantocheck_advance(const AdvanceArguments *a)
         a->motion.load.at[0] = a->load.at[n];
         if (step(&a->kernel, &a->motion, &a->train, &a->work) == 0)
             return (double)n;
-        record(&a->kernel, &a->motion, &a->train, &a->work, &a->recording, n);
+        record(&a->kernel, &a->kernel.window, &a->motion, &a->train, &a->work, &a->recording, n);
     }
     return (double)a->load.n[0];
 }
+
+/* Advance runs on one line, each in a lane, from a step to another, and record; return the number of the step that was
+ * not completed, or the last. `lanes` holds the words of each `Lane`; `work` has no contacts. */
+typedef struct {
+    int64_t bytes;
+    KernelArrays kernel;
+    ScalarWorkspace scalar;
+    Array node;
+    Indices lanes;
+    int64_t first, end;
+} AdvanceLanesArguments;
+
+EXPORT double pantocheck_advance_lanes(const AdvanceLanesArguments *a)
+{
+    CHECK_SIZE(a);
+    Lane lane[LANES];
+    int lanes = (int)a->lanes.n[0];
+    if (a->lanes.n[1] * 8 != sizeof *lane || lanes > LANES)
+        return -1.0;
+    memcpy(lane, a->lanes.at, lanes * sizeof *lane);
+    for (int l = 0; l < lanes; l++) {
+        lane[l].motion.w.at += l;
+        lane[l].motion.r.at += l;
+        lane[l].motion.force.at += l;
+    }
+    Workspace work = {.scalar = a->scalar, .node = a->node};
+    for (int64_t n = a->first; n < a->end; n++) {
+        if (step_lanes(&a->kernel, lane, &work, n) == 0)
+            return (double)n;
+        for (int l = 0; l < lanes; l++)
+            if (n >= lane[l].begin) {
+                Workspace own = {.contact = lane[l].contact};
+                record(&a->kernel, &lane[l].window, &lane[l].motion, &lane[l].train, &own, &lane[l].recording,
+                       n - lane[l].begin);
+            }
+    }
+    return (double)a->end;
+}
+
+/* Number of runs that the widest vectors of the processor hold. */
+EXPORT double pantocheck_lanes(void) { return lanes_of_vectors(); }
 
 /* Eliminate station by station; the diagonal blocks A_s become D_s. */
 typedef struct { int64_t bytes; Array diagonal, below; Flags free; Factor factor; } EliminateArguments;

@@ -1,4 +1,4 @@
-/* Functions of vectors of WIDTH numbers: included by time_step.c once for each width.
+/* Functions of vectors of WIDTH numbers: included by time_step.c once for each width; those of panels for 4 and 2.
  *
  * The lanes of a panel are LANES pieces of a row; PARTS vectors hold them. All results have the same bits for each width:
  * lanes do not influence each other, and sums over lanes have a fixed order.
@@ -10,6 +10,9 @@
 #define load WIDE(load)
 #define store WIDE(store)
 #define splat WIDE(splat)
+#define Mask WIDE(Mask)
+#define Element WIDE(Element)
+#define deform WIDE(deform)
 #define shift_up WIDE(shift_up)
 #define shift_down WIDE(shift_down)
 #define transpose WIDE(transpose)
@@ -22,19 +25,55 @@
 #define shift_lanes_down WIDE(shift_lanes_down)
 #define VECTOR_CODE static __attribute__((noinline))
 
+#if WIDTH == 1
+typedef double Vector;
+typedef double Unaligned;
+typedef int64_t Mask;
+#else
 typedef double Vector __attribute__((vector_size(8 * WIDTH)));
 typedef double Unaligned __attribute__((vector_size(8 * WIDTH), aligned(8), may_alias));
+typedef int64_t Mask __attribute__((vector_size(8 * WIDTH)));
+#endif
 #if defined(__clang__)
 #define SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #else
-typedef int64_t WIDE(Order) __attribute__((vector_size(8 * WIDTH)));
-#define SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (WIDE(Order)){__VA_ARGS__})
+#define SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (Mask){__VA_ARGS__})
 #endif
 
 INLINE Vector load(const double *from) { return *(const Unaligned *)from; }
 INLINE void store(double *to, Vector v) { *(Unaligned *)to = v; }
 INLINE Vector splat(double x) { return x - (Vector){0.0}; }
 
+/* Forces of some elements between station 0 and 1 (`wire_step.py`): w, r and their rates v, u; those of stiffness are
+ * given with damped w and r. */
+typedef struct { Vector shear, drag, tilt, bend; } Element;
+
+INLINE Element deform(const Vector entries[ENTRIES], Vector w0, Vector w1, Vector r0, Vector r1, Vector v0, Vector v1,
+                      Vector u0, Vector u1)
+{
+    Vector difference = w0 - w1, total = r0 + r1, mass = entries[4], length = entries[5];
+    Vector apart = v0 - v1, along = v0 + v1, alike = length * (u0 + u1), against = length * (u0 - u1);
+    Vector moment = mass * length, shear = entries[0] * difference + entries[1] * total;
+    Vector tilt = entries[1] * difference + entries[2] * total, bend = entries[3] * (r0 - r1);
+    return (Element){
+        .shear = shear + mass * (splat(51.0) * apart + splat(4.5) * alike),
+        .drag = mass * (splat(105.0) * along + splat(17.5) * against),
+        .tilt = tilt + moment * (splat(4.5) * apart + splat(0.5) * alike),
+        .bend = bend + moment * (splat(17.5) * along + splat(3.5) * against),
+    };
+}
+
+/* Predict displacement q and velocity v of some stations. */
+INLINE void predict(double *field, int64_t plane, Vector delta, Vector square, Vector *q, Vector *v)
+{
+    Vector displacement = load(field), velocity = load(field + plane), acceleration = load(field + 2 * plane);
+    *q = displacement + (delta * velocity + square * acceleration);
+    *v = velocity + delta * acceleration;
+    store(field, *q);
+    store(field + plane, *v);
+}
+
+#if WIDTH == 2 || WIDTH == 4
 /* Move every number up (down) by one; the first (last) one comes from the last (first) one of the other vector.
  * Transpose WIDTH vectors: number i of vector j becomes number j of vector i. */
 #if WIDTH == 4
@@ -90,25 +129,13 @@ VECTOR_CODE void WIDE(add_multiple)(double *field, double value, const double *r
         store(field + i, load(field + i) + x * load(row + i));
 }
 
-/* Predict displacement q and velocity v of some stations. */
-INLINE void predict(double *field, int64_t plane, Vector delta, Vector square, Vector *q, Vector *v)
-{
-    Vector displacement = load(field), velocity = load(field + plane), acceleration = load(field + 2 * plane);
-    *q = displacement + (delta * velocity + square * acceleration);
-    *v = velocity + delta * acceleration;
-    store(field, *q);
-    store(field + plane, *v);
-}
-
 /* Predict the motion of one wire, and store its forces (`wire_step.py`). */
 VECTOR_CODE void WIDE(predict_wire)(double dt, double coefficient, const double *elements, double *w, double *r,
                                     int64_t width, int64_t plane, int64_t first, int64_t last)
 {
     Vector delta = splat(dt), square = splat(dt * dt), beta = splat(coefficient), zero = splat(0.0);
-    Vector mass_shear = splat(51.0), mass_shear_tilt = splat(4.5), mass_tilt = splat(0.5);
-    Vector mass_drag = splat(105.0), mass_drag_bend = splat(17.5), mass_bend = splat(3.5);
-    Vector shear_before = zero, drag_before = zero, tilt_before = zero, bend_before = zero;
-    Vector w0, v0, r0, u0, w_next, v_next, r_next, u_next;
+    Vector w0, v0, r0, u0, w_next, v_next, r_next, u_next, entries[ENTRIES];
+    Element before = {zero, zero, zero, zero};
     int64_t start = first > 0 ? first - WIDTH : 0;
     predict(w + start, plane, delta, square, &w0, &v0);
     predict(r + start, plane, delta, square, &r0, &u0);
@@ -116,26 +143,20 @@ VECTOR_CODE void WIDE(predict_wire)(double dt, double coefficient, const double 
         /* Some stations, and those after each of them. */
         predict(w + s + WIDTH, plane, delta, square, &w_next, &v_next);
         predict(r + s + WIDTH, plane, delta, square, &r_next, &u_next);
-        Vector v1 = shift_down(v0, v_next), u1 = shift_down(u0, u_next);
         Vector damped_w = w0 + beta * v0, damped_r = r0 + beta * u0;
-        Vector difference = damped_w - shift_down(damped_w, w_next + beta * v_next);
-        Vector slope_1 = shift_down(damped_r, r_next + beta * u_next), total = damped_r + slope_1;
-        Vector k12 = load(elements + width + s);
-        Vector shear = load(elements + s) * difference + k12 * total;
-        Vector tilt = k12 * difference + load(elements + 2 * width + s) * total;
-        Vector bend = load(elements + 3 * width + s) * (damped_r - slope_1);
-        Vector mass = load(elements + 4 * width + s), length = load(elements + 5 * width + s);
-        Vector apart = v0 - v1, along = v0 + v1, alike = length * (u0 + u1), against = length * (u0 - u1);
-        shear = shear + mass * (mass_shear * apart + mass_shear_tilt * alike);
-        Vector drag = mass * (mass_drag * along + mass_drag_bend * against), moment = mass * length;
-        tilt = tilt + moment * (mass_shear_tilt * apart + mass_tilt * alike);
-        bend = bend + moment * (mass_drag_bend * along + mass_bend * against);
+        for (int i = 0; i < ENTRIES; i++)
+            entries[i] = load(elements + i * width + s);
+        Element here = deform(entries, damped_w, shift_down(damped_w, w_next + beta * v_next), damped_r,
+                              shift_down(damped_r, r_next + beta * u_next), v0, shift_down(v0, v_next), u0,
+                              shift_down(u0, u_next));
         if (s >= first) {
             /* Reactions of the elements before and after each station. */
-            store(w + 2 * plane + s, (shift_up(shear, shear_before) - shear) - (shift_up(drag, drag_before) + drag));
-            store(r + 2 * plane + s, (shift_up(bend, bend_before) - bend) - (shift_up(tilt, tilt_before) + tilt));
+            store(w + 2 * plane + s, (shift_up(here.shear, before.shear) - here.shear) -
+                                         (shift_up(here.drag, before.drag) + here.drag));
+            store(r + 2 * plane + s,
+                  (shift_up(here.bend, before.bend) - here.bend) - (shift_up(here.tilt, before.tilt) + here.tilt));
         }
-        shear_before = shear, drag_before = drag, tilt_before = tilt, bend_before = bend;
+        before = here;
         w0 = w_next, v0 = v_next, r0 = r_next, u0 = u_next;
     }
 }
@@ -270,6 +291,10 @@ VECTOR_CODE void WIDE(substitute_pair)(Panel a, Panel b, int64_t piece, int64_t 
         }
 }
 
+#endif
+
+#include "time_step_lanes.h"
+
 #undef PARTS
 #undef Vector
 #undef Unaligned
@@ -277,6 +302,9 @@ VECTOR_CODE void WIDE(substitute_pair)(Panel a, Panel b, int64_t piece, int64_t 
 #undef load
 #undef store
 #undef splat
+#undef Mask
+#undef Element
+#undef deform
 #undef shift_up
 #undef shift_down
 #undef transpose

@@ -21,7 +21,7 @@ from pantocheck.conformance.grading.record_uncertainty import shift_component
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import Evaluation, ValuesByOwner
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
-from pantocheck.conformance.runs.case_run import run_passage, run_start
+from pantocheck.conformance.runs.case_run import run_passage, run_starts
 from pantocheck.model import discretise
 from verification.formulations.library_passages import PASSAGES
 from verification.speed.passage_lines import ac_simple
@@ -42,7 +42,7 @@ def calibrate_start(case: Case) -> Calibration:
     signals = RecordSignals(run.record, case.file.filter, case.line.geometry.supports)
 
     def evaluate(starts: Iterable[RunStart]) -> list[Evaluation]:
-        records = (run_start(start, line, discretisation, run.uplift_forces) for start in starts)
+        records = run_starts(tuple(starts), line, discretisation, run.uplift_forces)
         return [replace(signals, record=record).evaluation for record in records]
 
     component = start_component(case, signals, evaluate(list_other_starts(case)))

@@ -169,7 +169,7 @@ def test_coarse_run_that_does_not_converge_leaves_two_meshes(
         return (delivered if uplift_forces is None else delivered.refined), (120.0, 120.0), None
 
     monkeypatch.setattr(reference_simulator, "_deliver", deliver)
-    monkeypatch.setattr(reference_simulator, "_deliver_start", lambda *_: None)
+    monkeypatch.setattr(reference_simulator, "_deliver_starts", lambda *_: ())
     without = ReferenceSimulator().run(case)
     assert without.coarse is None
     found = CaseEvaluation(case, replace(without, starts=())).uncertainty
@@ -185,6 +185,6 @@ def test_runs_are_reproducible(case: Case, delivered: Delivered) -> None:
     start = list_other_starts(case)[-1]
     discretisation = case.file.discretisation
     line = discretise(build_catenary(case.line), discretisation.element_m)
-    again = case_run.run_start(start, line, discretisation, (120.0, 120.0))
+    (again,) = case_run.run_starts([start], line, discretisation, (120.0, 120.0))
     before = delivered.starts[-1].record
     np.testing.assert_array_equal(again.force, before.force)

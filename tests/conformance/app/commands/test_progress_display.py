@@ -276,7 +276,7 @@ def test_failure_of_one_run_ends_the_others(monkeypatch: pytest.MonkeyPatch) -> 
             ended.append(str(reason))
             raise
 
-    monkeypatch.setattr(reference_simulator, "_deliver_start", fail)
+    monkeypatch.setattr(reference_simulator, "_deliver_starts", fail)
     monkeypatch.setattr(reference_simulator, "_deliver_again", wait)
     monkeypatch.setattr(reference_simulator, "_deliver_coarse", fail)
     with pytest.raises(SimulationError):
