@@ -1,11 +1,11 @@
 """Freeze the artefacts of the commands of one state, and compare them with those of another.
 
-    python -m verification.frozen write DIR --pantocheck PROGRAM [--words old|new] [--checkout DIR] [--only NAME ...]
+    python -m verification.frozen write DIR --pantocheck PROGRAM [--checkout DIR] [--only NAME ...]
     python -m verification.frozen compare OLD NEW [--only NAME ...]
 
 `write` runs the commands of `commands.py` with the executable PROGRAM (default: the one on the search path).
-`compare` prints every difference with its file and place; its exit code is 1 if there is one. `tables.py` holds the
-intended differences and the placeholders of digests, versions and dates.
+`compare` prints every difference with its file and place; its exit code is 1 if there is one. `placeholders.py` names
+the digests, versions, dates and facts of a run that are not compared.
 """
 
 import argparse
@@ -22,7 +22,6 @@ def main() -> None:
     writing = actions.add_parser("write", help="run the commands of one state")
     writing.add_argument("folder", type=Path, metavar="DIR")
     writing.add_argument("--pantocheck", type=Path, default=Path(shutil.which("pantocheck") or "pantocheck"))
-    writing.add_argument("--words", choices=("old", "new"), default="new")
     writing.add_argument("--checkout", type=Path, default=Path(__file__).parents[2], help="checkout with the examples")
     comparing = actions.add_parser("compare", help="compare the artefacts of two states")
     comparing.add_argument("old", type=Path)
@@ -34,7 +33,7 @@ def main() -> None:
     if unknown:
         parser.error(f"no command {', '.join(sorted(unknown))}; there are {', '.join(COMMANDS)}")
     if options.action == "write":
-        agreed = write(options.folder, options.pantocheck, options.words, options.checkout, options.only)
+        agreed = write(options.folder, options.pantocheck, options.checkout, options.only)
     else:
         from verification.frozen.comparison import compare
 

@@ -12,42 +12,11 @@ import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
-
-Words = Literal["old", "new"]
 
 INPUTS = Path(__file__).parent / "inputs"
 
 EXAMPLES = ("dossier", "string_catenary")
 """Folders of `examples/` that the commands read."""
-
-OLD_WORDS = {
-    "drop simulate": "drop",
-    "drop campaign": "drop-campaign",
-    "drop identify": "identify",
-    "drop fit": "fit-damping",
-    "drop compare": "compare-drop",
-    "line import": "import-line",
-    "line export": "export-line",
-    "line statics": "compare-statics",
-    "pantograph compare": "compare-response",
-    "pantograph fit": "fit-pantograph",
-    "system check": "check-adapter",
-    "system self-test": "self-test",
-}
-"""Words of commit 326dbcb4 for the commands that have other words since."""
-
-OLD_OPTIONS = {"show": "--drawing show/line.svg"}
-"""Options that a command had in commit 326dbcb4 and that are a command of their own since."""
-
-OLD_SCHEMAS = {
-    "response-limits.toml": "pantocheck.response-limits/1",
-    "drop-limits.toml": "pantocheck.drop-limits/1",
-}
-"""Formats of inputs in commit 326dbcb4; their other keys are the same since."""
-
-SPLIT = {"line-draw": "show"}
-"""Commands that are options of another command in commit 326dbcb4, with the name of that command."""
 
 EVERY_FORMAT = "--formats html,pdf,json,csv,junit,md,badge,annotations,codequality"
 RESPONSES = "inputs/dossier/measured/response-70N.csv inputs/dossier/measured/response-110N.csv"
@@ -137,6 +106,9 @@ COMMANDS = {
 WITHOUT_FOLDER = ("cases", "show", "describe", "verify", "new", "system", "simulate")
 """Commands without a folder of results: no option `--out` is added."""
 
+ENDED = (0, 1, 3)
+"""Exit codes of commands that ended: pass, not passed, no limit judges."""
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -148,52 +120,42 @@ class Outcome:
     seconds: float
 
 
-def write(folder: Path, program: Path, words: Words, checkout: Path, selected: list[str]) -> bool:
+def write(folder: Path, program: Path, checkout: Path, selected: list[str]) -> bool:
     """Run the commands with one installed program and keep their artefacts.
 
     Args:
         folder: Folder of the artefacts; a folder of a selected command is replaced.
         program: Executable `pantocheck`; the programs beside it come first on the search path.
-        words: Words of the commands that the program knows.
         checkout: Checkout of the same state, for its examples.
         selected: Names of the commands; all if empty.
 
     Returns:
-        True if every command ended with 0 (pass) or 1 (not passed).
+        True if every command ended with 0 (pass), 1 (not passed) or 3 (no limit judges it).
     """
     folder.mkdir(parents=True, exist_ok=True)
-    _copy_inputs(folder / "inputs", checkout, words)
+    shutil.rmtree(folder / "inputs", ignore_errors=True)
+    shutil.copytree(INPUTS, folder / "inputs")
+    for example in EXAMPLES:
+        shutil.copytree(checkout / "examples" / example, folder / "inputs" / example)
     listed = folder / "commands.json"
     outcomes = json.loads(listed.read_text()) if selected and listed.is_file() else {}
-    names = [name for name in selected or COMMANDS if words == "new" or name not in SPLIT]
+    names = selected or list(COMMANDS)
     begin = time.monotonic()
     for name in names:
-        outcomes[name] = vars(_run(folder, program.absolute(), words, name))
+        outcomes[name] = vars(_run(folder, program.absolute(), name))
         listed.write_text(json.dumps(outcomes, indent=1))
-    failed = [name for name in names if outcomes[name]["exit_code"] not in (0, 1)]
+    failed = [name for name in names if outcomes[name]["exit_code"] not in ENDED]
     print(f"{len(names)} commands in {time.monotonic() - begin:.0f} s, failed: {', '.join(failed) or 'none'}")
     return not failed
 
 
-def _copy_inputs(folder: Path, checkout: Path, words: Words) -> None:
-    shutil.rmtree(folder, ignore_errors=True)
-    shutil.copytree(INPUTS, folder)
-    for name, schema in OLD_SCHEMAS.items() if words == "old" else ():
-        text = (folder / name).read_text()
-        (folder / name).write_text(text.replace("pantocheck.comparison-limits/1", schema))
-    for example in EXAMPLES:
-        shutil.copytree(checkout / "examples" / example, folder / example)
-
-
-def _run(folder: Path, program: Path, words: Words, name: str) -> Outcome:
+def _run(folder: Path, program: Path, name: str) -> Outcome:
     out = folder / name
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir()
     arguments = shlex.split(COMMANDS[name])
     if "--out" not in arguments and arguments[0] not in WITHOUT_FOLDER:
         arguments += ["--out", name]
-    if words == "old":
-        arguments = _old_words(arguments) + shlex.split(OLD_OPTIONS.get(name, ""))
     begin = time.monotonic()
     done = subprocess.run(
         [str(program), *arguments], cwd=folder, env=_environment(program), capture_output=True, text=True, check=False
@@ -201,14 +163,9 @@ def _run(folder: Path, program: Path, words: Words, name: str) -> Outcome:
     outcome = Outcome(shlex.join(arguments), done.returncode, round(time.monotonic() - begin, 1))
     (out / "output.txt").write_text(done.stdout)
     print(f"{outcome.seconds:6.1f} s  exit code {outcome.exit_code}  pantocheck {outcome.command}", flush=True)
-    if outcome.exit_code not in (0, 1):
+    if outcome.exit_code not in ENDED:
         print(done.stderr, flush=True)
     return outcome
-
-
-def _old_words(arguments: list[str]) -> list[str]:
-    group = " ".join(arguments[:2])
-    return [OLD_WORDS[group], *arguments[2:]] if group in OLD_WORDS else arguments
 
 
 def _environment(program: Path) -> dict[str, str]:

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from difflib import SequenceMatcher
 from pathlib import Path
 
-from verification.frozen.commands import COMMANDS, SPLIT
-from verification.frozen.contents import Contents, read_contents
-from verification.frozen.tables import ADDED, MOVED, NOT_COMPARED, REMOVED, Tables
+from verification.frozen.commands import COMMANDS
+from verification.frozen.contents import read_contents
+from verification.frozen.placeholders import NOT_COMPARED, replace
 
 ABSENT = "(absent)"
 LONGEST = 160
@@ -35,69 +35,48 @@ def compare(old: Path, new: Path, selected: list[str]) -> bool:
     Returns:
         True if nothing differs.
     """
-    tables, counts, total = Tables(), Counter[str](), 0
+    counts, total = Counter[str](), 0
     for name in selected or COMMANDS:
-        pairs = _pair_files(old, new, name, tables)
-        differences = [("exit code", *codes)] if (codes := _exit_codes(old, new, name)) else []
-        total += _print_differences(name, differences)
-        for file, old_path, new_path in pairs:
-            total += _print_differences(file, list(_compare_files(file, old_path, new_path, tables, counts)))
+        codes = [str(_read_outcomes(folder).get(name, {}).get("exit_code", ABSENT)) for folder in (old, new)]
+        if codes[0] != codes[1] or codes[0] == ABSENT:  # a command that neither state has run is not an agreement
+            total += _print_differences(name, [("exit code", codes[0], codes[1])])
+        old_files, new_files = (_list_files(folder, name) for folder in (old, new))
+        for file in sorted(old_files | new_files):
+            total += _print_differences(file, list(_compare_files(file, old_files, new_files, counts)))
         counts["commands"] += 1
     print("compared: " + ", ".join(f"{count} {what}" for what, count in sorted(counts.items())))
-    for pattern in tables.unused():
-        print(f"intended difference not found: {pattern}")
     print(f"{total} differences")
     return total == 0
 
 
-def _exit_codes(old: Path, new: Path, name: str) -> tuple[str, str] | None:
-    codes = [
-        str(json.loads((folder / "commands.json").read_text()).get(known, {}).get("exit_code", ABSENT))
-        for folder, known in ((old, SPLIT.get(name, name)), (new, name))
-    ]
-    # A command that neither state has run is not an agreement.
-    return None if codes[0] == codes[1] != ABSENT else (codes[0], codes[1])
+def _read_outcomes(folder: Path) -> dict[str, dict[str, object]]:
+    outcomes: dict[str, dict[str, object]] = json.loads((folder / "commands.json").read_text())
+    return outcomes
 
 
-def _pair_files(old: Path, new: Path, name: str, tables: Tables) -> list[tuple[str, Path | None, Path | None]]:
-    """Name in the new state and both paths of every file of a command."""
-    old_names = {name, SPLIT.get(name, name)}
-    renamed = {tables.file(file): path for old_name in sorted(old_names) for file, path in _list_files(old, old_name)}
-    old_files = {file: path for file, path in renamed.items() if file.startswith(f"{name}/")}
-    new_files = dict(_list_files(new, name))
-    return [
-        (file, old_files.get(file), new_files.get(file))
-        for file in sorted(old_files | new_files)
-        if not tables.omits(NOT_COMPARED, file)
-    ]
-
-
-def _list_files(folder: Path, name: str) -> Iterator[tuple[str, Path]]:
-    for path in (folder / name).rglob("*"):
-        if path.is_file():
-            yield path.relative_to(folder).as_posix(), path
+def _list_files(folder: Path, name: str) -> dict[str, Path]:
+    """Compared files of a command by their path below the folder of artefacts."""
+    files = {path.relative_to(folder).as_posix(): path for path in (folder / name).rglob("*") if path.is_file()}
+    return {file: path for file, path in files.items() if not NOT_COMPARED.fullmatch(file)}
 
 
 def _compare_files(
-    file: str, old: Path | None, new: Path | None, tables: Tables, counts: Counter[str]
+    file: str, old_files: dict[str, Path], new_files: dict[str, Path], counts: Counter[str]
 ) -> Iterator[Difference]:
+    old, new = old_files.get(file), new_files.get(file)
     if old is None or new is None:
-        if not tables.omits(ADDED if old is None else REMOVED, file):
-            yield "file", *(ABSENT if path is None else "present" for path in (old, new))
+        yield "file", *(ABSENT if path is None else "present" for path in (old, new))
         return
     counts[f"files {new.suffix}"] += 1
     if old.read_bytes() == new.read_bytes():
         counts["files with the same bytes"] += 1
-    old_parts, new_parts = read_contents(old, tables.old_text), read_contents(new, tables.new_text)
-    if _count_words(old_parts) == _count_words(new_parts) and tables.omits(MOVED, file):
-        counts["files whose words moved"] += 1
-        old_parts = new_parts
+    old_parts, new_parts = (read_contents(path, replace) for path in (old, new))
     for part in old_parts | new_parts:
         old_part, new_part = old_parts.get(part), new_parts.get(part)
         if old_part is None or new_part is None:
             yield part, *(ABSENT if content is None else "present" for content in (old_part, new_part))
         elif isinstance(old_part, dict) and isinstance(new_part, dict):
-            yield from _compare_values(file, old_part, new_part, tables, counts)
+            yield from _compare_values(file, old_part, new_part, counts)
         else:
             kind = part.split(" ")[0]
             if kind in ("page", "figure"):
@@ -106,34 +85,14 @@ def _compare_files(
             yield from _compare_sequences(part, list(old_part), list(new_part))
 
 
-def _count_words(parts: Contents) -> Counter[str]:
-    """Every word with its number, in any order; empty for a file with values."""
-    sequences = [content for content in parts.values() if not isinstance(content, dict)]
-    return Counter(word for sequence in sequences for word in sequence)
-
-
-def _compare_values(
-    file: str, old: dict[str, str], new: dict[str, str], tables: Tables, counts: Counter[str]
-) -> Iterator[Difference]:
-    renamed = {tables.place(file + place): value for place, value in old.items()}
-    if len(renamed) < len(old):
-        yield "renamed places", str(len(old)), f"{len(renamed)}: several have the same new name"
-    later = {file + place: value for place, value in new.items()}
-    for place in renamed | later:
-        if tables.omits(NOT_COMPARED, place):
+def _compare_values(file: str, old: dict[str, str], new: dict[str, str], counts: Counter[str]) -> Iterator[Difference]:
+    for place in old | new:
+        if NOT_COMPARED.fullmatch(file + place):
             counts["values left out"] += 1
             continue
         counts["values"] += 1
-        if renamed.get(place) == later.get(place):
-            continue
-        if place not in later and tables.omits(REMOVED, place):
-            counts["values removed"] += 1
-        elif place not in renamed and tables.omits(ADDED, place):
-            counts["values added"] += 1
-        elif tables.changes(place, renamed.get(place), later.get(place)):
-            counts["values changed"] += 1
-        else:
-            yield place.removeprefix(file), renamed.get(place, ABSENT), later.get(place, ABSENT)
+        if old.get(place) != new.get(place):
+            yield place, old.get(place, ABSENT), new.get(place, ABSENT)
 
 
 def _compare_sequences(part: str, old: list[str], new: list[str]) -> Iterator[Difference]:
