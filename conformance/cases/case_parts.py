@@ -28,7 +28,7 @@ from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 T = TypeVar("T", bound=BaseModel)
 
 OPTION = "option "
-"""Begin of the origin of a change by an option of the command line."""
+"""First words of the origin of a change by an option of the command line."""
 
 LONGEST_NAME = 200
 """Largest number of characters of a file name that is looked up in an invalid case file."""

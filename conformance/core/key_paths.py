@@ -99,7 +99,7 @@ def check_path(
 
 
 def _begin_key(path: KeyPath) -> str:
-    """Begin of the keys in a table; empty for the outermost one."""
+    """Prefix of the keys in a table; empty for the outermost one."""
     return f"{join_path(path)}." if path else ""
 
 

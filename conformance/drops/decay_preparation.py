@@ -316,7 +316,7 @@ def use_whole_decay(
 ) -> LinearDecay:
     """Decay of a line in motion from the guard to the end of the record; parameters as in `find_linear_decay`.
 
-    The poles then show whether it begins later (`decay_begin`).
+    The poles then show whether it begins later (`decay_onset`).
     """
     filtered = _filter_record(record, columns, release, band, clipped_until)
     search = DecaySearch(filtered.samples, filtered.guard, filtered.step / record.rate, band, filtered.rest)

@@ -89,7 +89,7 @@ class ResidualCourse:
     ratio: RealArray
     """Ratio in each window at each channel, (w, c) [-]."""
     reference: str
-    """Motion at rest, or what replaces it."""
+    """Motion at rest, or its substitute in the record."""
 
     @property
     def middle(self) -> RealArray:
@@ -120,7 +120,7 @@ class DecaySearch:
     """Filtered and decimated samples at rest before the release, (r, c); may be none."""
 
     def find_late_begin(self) -> int | None:
-        """Begin of a later part whose residual is like the motion at rest; None if there is none."""
+        """Start of a later part whose residual is like the motion at rest; None if there is none."""
         total = self.samples.shape[0]
         for share in LATE_SHARES:
             late = replace(self, begin=self.begin + int(share * (total - self.begin)))
@@ -131,7 +131,7 @@ class DecaySearch:
         return None
 
     def _extend_back(self, earliest: int) -> int:
-        """Earliest begin of a fit whose residual remains like the motion at rest."""
+        """Earliest start of a fit whose residual remains like the motion at rest."""
         total, begin, limit = self.samples.shape[0], self.begin, NEAR_FIT
         for _ in range(8):
             near = replace(self, begin=begin).follow_coarse_fit().first_near(begin, limit)

@@ -9,8 +9,8 @@ from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.drops.classical_poles import find_classical_poles
-from pantocheck.conformance.drops.decay_begin import NO_DELAY, begin_again, cut_begin, find_begin, refuse_begin
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
+from pantocheck.conformance.drops.decay_onset import NO_DELAY, find_onset, move_onset, refuse_onset, restore_onset
 from pantocheck.conformance.drops.decay_preparation import (
     LinearDecay,
     PreparedDecay,
@@ -184,14 +184,14 @@ def identify_decays(
     applied: list[SensorClock] = []
     for _ in range(ROUNDS):
         found = _identify_once(decays, band, start, progress, plan)
-        begin = find_begin(found.fit) if _is_free(start, plan) else NO_DELAY
+        onset = find_onset(found.fit) if _is_free(start, plan) else NO_DELAY
         # Poles that the user left out, and transients, would be taken for wrong clocks.
-        is_explained = not begin.transients and (start is None or found.fit.misfit < SHARED_POLES)
+        is_explained = not onset.transients and (start is None or found.fit.misfit < SHARED_POLES)
         compared = compare_clocks(found.fit) if is_explained and plan.method != "classical" else None
         clocks = () if compared is None else sum_clocks(compared.clocks, applied)
         moved = [] if compared is None else list_corrections(compared.clocks, applied)
         records = [decay.record for decay in decays]
-        if moved and begin.delay == 0:
+        if moved and onset.delay == 0:
             refuse_shared_clock(records, clocks)
         if moved and not any(record.shared_clock for record in records):
             applied += moved
@@ -200,18 +200,18 @@ def identify_decays(
                 exclude_stretches(prepare_again(decay, align_record(decay.record, moved), band), plan)
                 for decay in decays
             ]
-            decays = [begin_again(new, old) for new, old in zip(aligned, decays, strict=True)]
-        elif begin.delay == 0:
+            decays = [restore_onset(new, old) for new, old in zip(aligned, decays, strict=True)]
+        elif onset.delay == 0:
             break
         else:
-            delay = BEGIN_STEP if begin.delay is None else begin.delay
+            delay = BEGIN_STEP if onset.delay is None else onset.delay
             decays = [
-                cut_begin(old, record.decay, delay) for old, record in zip(decays, found.fit.records, strict=True)
+                move_onset(old, record.decay, delay) for old, record in zip(decays, found.fit.records, strict=True)
             ]
             if min(decay.linear.duration for decay in decays) < SHORTEST_DECAY:
                 break
-    if begin.delay != 0:
-        raise refuse_begin(decays[0], begin)
+    if onset.delay != 0:
+        raise refuse_onset(decays[0], onset)
     if compared is not None and any(clock.rate for clock in applied):
         # The rates were found from the same decays as the poles: both are estimated together.
         fit = replace(found.fit, poles=compared.poles, covariance=compared.covariance)
@@ -238,7 +238,7 @@ def _require_certain(name: str, modes: tuple[Mode, ...]) -> None:
 
 
 def _is_free(start: ComplexArray | None, plan: IdentificationPlan) -> bool:
-    """Whether the identification chooses poles and method; with those of a user it does not test the begin."""
+    """Whether the identification chooses poles and method; with those of a user it does not test the onset."""
     return start is None and not plan.changes_poles and plan.method != "classical"
 
 
@@ -249,7 +249,7 @@ def _identify_once(
     progress: Callable[[str], None],
     plan: IdentificationPlan,
 ) -> Identification:
-    """Identify decays from their present begin, beside ambient motion if they show any."""
+    """Identify decays from their present start, beside ambient motion if they show any."""
     driven, given = any(decay.driven for decay in decays), None
     if not (driven and _is_free(start, plan)):
         found = _identify_free_decays(decays, band, start, progress, plan)

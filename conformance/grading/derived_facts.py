@@ -19,7 +19,7 @@ from pantocheck.model.fem.beam import wave_speed
 from pantocheck.model.statics.wave_factors import doppler_factor
 
 UPLIFT_FORCE = "Uplift force of pantograph"
-"""Begin of the name of a fact."""
+"""Prefix of the name of a fact."""
 
 
 def list_derived_facts(case: Case, uplift_forces: Sequence[float] = ()) -> list[DerivedFact]:

@@ -50,7 +50,7 @@ WORST_PLACES = 100
 """Number of places whose force is kept."""
 
 SCRATCH = ".forces-"
-"""Begin of the name of a temporary folder."""
+"""Prefix of the name of a temporary folder."""
 
 MISPLACED = "the force is that of another place"
 """Reason of a passage that does not pass because its run is misplaced."""

@@ -151,7 +151,7 @@ def find_responses(
 ) -> tuple[RealArray, tuple[RealArray, RealArray]]:
     """Forces of the strips of a pantograph, and response of its head with its free motions, over compared samples.
 
-    Friction, stops and the place of the wire act on the force as delivered, from the begin of the record on.
+    Friction, stops and the place of the wire act on the force as delivered, from the start of the record on.
 
     Args:
         case: Case of the record.

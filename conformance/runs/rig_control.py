@@ -141,7 +141,7 @@ class RigControl:
 
         Args:
             samples: Samples since the last step; None: a message that is none.
-            lateness: Time from the planned begin of the step to its begin [s].
+            lateness: Time from the planned start of the step to its start [s].
         """
         self.number += 1
         for sample in samples:
@@ -168,7 +168,7 @@ class RigControl:
 
     @property
     def _elapsed(self) -> float:
-        """Time since the begin of the phase [s]."""
+        """Time since the start of the phase [s]."""
         return (self.number - self._begin) * self.dt
 
     def _enter(self, phase: RigPhase) -> None:

@@ -69,9 +69,9 @@ class RigTimes:
     """Times of the steps of a run."""
 
     work: TimeHistogram = field(default_factory=TimeHistogram)
-    """From the begin of a step until its command has left."""
+    """From the start of a step until its command has left."""
     lateness: TimeHistogram = field(default_factory=TimeHistogram)
-    """From the tick to the begin of its step."""
+    """From the tick to the start of its step."""
     delay: TimeHistogram = field(default_factory=TimeHistogram)
     """Age of the command that acted at the last sample."""
     steps: int = 0

@@ -64,7 +64,7 @@ def run_rig(case: Case, control: RigControl, link: RigLink, out: Path) -> dict[s
 
     Args:
         case: Case of the line.
-        control: Control at its begin.
+        control: Control at its start.
         link: Exchange with the rig.
         out: Folder.
 

@@ -105,7 +105,7 @@ def _presags(file: LineFile, line: DiscretisedLine) -> RealArray:
 
 
 def _list_elasticities(line: DiscretisedLine, positions: RealArray) -> Iterator[tuple[str, RealArray]]:
-    """Begin of the name of each elasticity, and its values at positions (n,) [mm/N]."""
+    """Prefix of the name of each elasticity, and its values at positions (n,) [mm/N]."""
     for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
         yield name, np.asarray(1e3 * static_uplift(line, positions, load) / load)
 

@@ -1,7 +1,7 @@
 /* Line as Functional Mock-up Unit for co-simulation, FMI 2.0 and 3.0: the core, and the interface around it.
  *
  * The file `line.bin` of the resources is an image of the memory of one instance (`line_image.py`): its addresses count
- * from its begin, and a table lists their places. Everything that a step changes is one block, so that a state is a copy
+ * from its start, and a table lists their places. Everything that a step changes is one block, so that a state is a copy
  * of this block. The value of a variable stands in `values` at its value reference.
  *
  * A head whose height is given has no mobility. A head whose force is given is nearly free of mass, and its motion is

@@ -2,7 +2,7 @@
 
     head | arguments of a step, with relative addresses | state, changed by steps | other arrays | places of addresses
 
-The head and the arguments are the structure `Image` of the C file. Addresses count from the begin of the image; the C
+The head and the arguments are the structure `Image` of the C file. Addresses count from the start of the image; the C
 file adds its own address to each. The values of all variables are the first array of the state.
 """
 

@@ -59,7 +59,7 @@ def measure(case_id: str, seconds: float) -> RigTimes:
 
 def print_table(times: RigTimes) -> None:
     """Print the number of steps by their times."""
-    print("| from [us] | to [us] | computing time of a step | lateness of its begin |\n|--:|--:|--:|--:|")
+    print("| from [us] | to [us] | computing time of a step | lateness of its start |\n|--:|--:|--:|--:|")
     for first, end in pairwise((*EDGES_US, None)):
         counts = [int(part.counts[first:end].sum()) for part in (times.work, times.lateness)]
         print(f"| {first} | {'' if end is None else end} | {counts[0]} | {counts[1]} |")

@@ -49,7 +49,7 @@ class Path(NamedTuple):
 
     begin: float
     length: float
-    """Time of its begin, and time to its end [s]."""
+    """Time of its start, and time to its end [s]."""
     first: tuple[float, float]
     last: tuple[float, float]
     """Height and speed at begin and end [m, m/s]."""

@@ -50,7 +50,7 @@ def main() -> int:
     """Measure and print; exit code 1 if a command exceeds its budget."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="compare with the budgets")
-    parser.add_argument("--only", default="", help="begin of the commands to be printed")
+    parser.add_argument("--only", default="", help="first words of the commands to be printed")
     parser.add_argument("--pythons", nargs="+", default=[sys.executable], help="interpreters with Pantocheck")
     parser.add_argument("--repeat", type=int, default=1, help="runs of every printed command")
     options = parser.parse_args()

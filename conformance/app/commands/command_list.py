@@ -83,7 +83,7 @@ SHARED_FILES = {
     "runs": ("runs import", "runs assess"),
     "system_self_test": ("system check",),
 }
-"""Begin of the names of files with several commands, each with its commands; another command has its own file."""
+"""Prefix of the names of files with several commands, each with its commands; another command has its own file."""
 
 COMMANDS = {name: summary for commands in PANELS.values() for name, summary in commands.items()}
 """Summary of each command by its name; the words of a command in a group are separated by a space."""

@@ -119,7 +119,7 @@ def _make_plain(content: object) -> Any:
 
 # Remarks of a run: those of several cases are footnotes, printed once; others are warnings of their case.
 STANDING_REMARKS = ("20-50 Hz: lumped models",)
-"""Begin of remarks that hold for every run and that a user cannot act on."""
+"""First words of remarks that hold for every run and that a user cannot act on."""
 
 
 # Log of a command on standard error: records of the loggers `pantocheck.*`, with `--verbose`.

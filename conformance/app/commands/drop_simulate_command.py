@@ -73,7 +73,7 @@ def drop_simulate_command(
 
 
 def begin_drop(logger: logging.Logger, drop: str) -> ShareCallback:
-    """Report the begin of a drop; returns the callback of its simulation."""
+    """Report the start of a drop; returns the callback of its simulation."""
     return StepSequence(logger, drop, {"simulation": 1.0}).begin("simulation")
 
 

@@ -142,7 +142,7 @@ class ExploreHandler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.OK, "text/html; charset=utf-8", self.server.page)
 
     def do_POST(self) -> None:
-        """RequestKind a request of the page."""
+        """Answer a request of the page."""
         if refusal := self._refuse(self.headers.get(TOKEN_HEADER, "")):
             self._send_problem(HTTPStatus.FORBIDDEN, refusal)
             return
@@ -199,13 +199,13 @@ class ExploreHandler(BaseHTTPRequestHandler):
 
 
 class Problem(ResultsPart):
-    """RequestKind to a refused request."""
+    """Answer to a refused request."""
 
     problem: str
 
 
 class Saved(ResultsPart):
-    """RequestKind to a request to save a setting."""
+    """Answer to a request to save a setting."""
 
     file: str
     command: str

@@ -64,7 +64,7 @@ def test_two_damping_files_are_compared_and_the_verdict_is_the_exit_code(folder:
 
 
 def test_progress_has_a_share(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
-    """The shares of two models and of the refined simulation increase to the begin of the report, at 95 %."""
+    """The shares of two models and of the refined simulation increase to the start of the report, at 95 %."""
     with caplog.at_level(logging.DEBUG, "pantocheck"):
         run("--damping", "own.toml", "--damping", "other.toml", "--limits", "limits.toml")
     steps = [record.step for record in caplog.records if isinstance(getattr(record, "step", None), TaskStep)]

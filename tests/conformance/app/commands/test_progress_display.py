@@ -151,7 +151,7 @@ def test_remaining_time_is_not_extrapolated_from_nothing() -> None:
 
 
 def test_repeated_tasks_raise_their_number() -> None:
-    """Clocks that were corrected, or a later begin, repeat the identification."""
+    """Clocks that were corrected, or a later onset, repeat the identification."""
     progress = TaskProgress("identification", 2, Clock())
     for name in ("release", "poles", "poles again"):
         progress.begin_task(name)

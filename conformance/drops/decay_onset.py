@@ -1,13 +1,12 @@
-"""Begin of the linear decay, tested by the poles.
+"""Onset of the linear decay, tested by the poles.
 
-The poles of the whole part must be modes. If droppers slacken at its start, poles that decay within a second or two
-represent this: no such pole is as slow as a mode. The decay then begins when they have died out.
+First, all poles must be modes. Droppers that slacken at the start of a part cause poles that decay within a second or
+two, much faster than modes. The linear decay then begins when these poles have died out.
 
-The poles of the whole part must be those of every later part.
-
-A dropper that slackens during the fitted part biases the poles, and poles without a mode represent the disturbance. If
-the line is linear, the estimate from the whole part is efficient: the difference to an estimate from a later part has
-the difference of both covariances [1]. Each estimate is one Gauss-Newton step from the fitted poles.
+Second, the poles of the whole part must agree with those of every later part. A dropper that slackens during the
+fitted part biases the poles, and poles without a mode represent the disturbance. If the line is linear, the estimate
+from the whole part is efficient: the difference to an estimate from a later part has the difference of both
+covariances [1]. Each estimate is one Gauss-Newton step from the fitted poles.
 
 References:
     [1] J. A. Hausman, Specification tests in econometrics, Econometrica 46 (1978) 1251-1271. doi:10.2307/1913827
@@ -47,28 +46,28 @@ INFORMATIVE = 3.0
 
 
 @dataclass(frozen=True)
-class DecayBegin:
-    """Begin that agrees with all later ones."""
+class DecayOnset:
+    """Start of a decay whose poles agree with those of every later start."""
 
     delay: float | None
-    """Time after the present begin [s]; None: there is none."""
+    """Time after the present start [s]; None: no later start is linear."""
     excess: float
-    """Mean squared difference of the poles from those of a later begin, over its expectation for noise [-]."""
+    """Mean squared difference of the poles from those of a later start, over its expectation for noise [-]."""
     transients: int = 0
     """Number of poles that decay too fast for modes; the poles are compared only if there are none."""
 
 
-NO_DELAY = DecayBegin(0.0, 0.0)
-"""Begin of a decay that is used as it is."""
+NO_DELAY = DecayOnset(0.0, 0.0)
+"""Onset of a decay that is used as it is."""
 
 
-def find_begin(fit: LineFit) -> DecayBegin:
-    """Find the earliest begin of the decays of a fit without transients, whose poles agree with those of later begins.
+def find_onset(fit: LineFit) -> DecayOnset:
+    """Find the earliest start of the decays of a fit from which their poles agree with those of every later start.
 
-    Transients are left to die out, whatever remains at later begins.
+    If poles are transients, the onset is the time at which they have died out.
     """
     if (transients := find_transients(fit)).any():
-        return DecayBegin(_find_silence(fit, transients), 0.0, int(transients.sum()))
+        return DecayOnset(_find_silence(fit, transients), 0.0, int(transients.sum()))
     delays = list(takewhile(lambda delay: all(_determines(block, delay) for block in fit.blocks), DELAYS))
     if len(delays) < 2:
         return NO_DELAY
@@ -78,7 +77,7 @@ def find_begin(fit: LineFit) -> DecayBegin:
         for number, early in enumerate(estimates)
     ]
     first = next((number for number, ratio in enumerate(ratios[:-1]) if ratio < 1), None)
-    return DecayBegin(None if first is None else DELAYS[first], ratios[0])
+    return DecayOnset(None if first is None else DELAYS[first], ratios[0])
 
 
 def find_transients(fit: LineFit) -> NDArray[np.bool_]:
@@ -142,41 +141,41 @@ def _compare(early: tuple[RealArray, RealArray], late: tuple[RealArray, RealArra
     return max(float(squares.sum()) / count / usual, float(squares.max(initial=0.0)) / ALONE**2)
 
 
-def cut_begin(decay: PreparedDecay, used: PreparedDecay, delay: float) -> PreparedDecay:
-    """Decay that begins later by a delay [s] than the decay that was used in its place.
+def move_onset(decay: PreparedDecay, used: PreparedDecay, delay: float) -> PreparedDecay:
+    """Start a decay later, by a delay [s] after the decay that was used in its place.
 
     Beside ambient motion, that decay reaches to the end of the record. It is cut if it is much longer.
     """
     late = used.linear.start + delay - decay.linear.start
     is_short = decay.linear.duration - late < (used.linear.duration - delay) / 2
-    return _begin_later(used, delay) if is_short else _begin_later(decay, late)
+    return _delay_onset(used, delay) if is_short else _delay_onset(decay, late)
 
 
-def begin_again(new: PreparedDecay, old: PreparedDecay) -> PreparedDecay:
-    """Decay of a corrected record, which begins as late as before."""
+def restore_onset(new: PreparedDecay, old: PreparedDecay) -> PreparedDecay:
+    """Start the decay of a corrected record at the onset that was found before the correction."""
     late = old.linear.start - new.linear.start
-    return _begin_later(new, late) if old.is_cut and late > 0 else new
+    return _delay_onset(new, late) if old.is_cut and late > 0 else new
 
 
-def _begin_later(decay: PreparedDecay, late: float) -> PreparedDecay:
+def _delay_onset(decay: PreparedDecay, late: float) -> PreparedDecay:
     linear, skipped = decay.linear, round(late / decay.linear.dt)
     shift = skipped * linear.dt
     name = decay.record.name
-    begin = (
-        f"{name}: used from {linear.start + shift - decay.release.time:.1f} s after the release; with an earlier "
-        "begin, the modes differ from those of the later decay, or poles decay faster than modes"
+    warning = (
+        f"{name}: used from {linear.start + shift - decay.release.time:.1f} s after the release: with an earlier "
+        "start, the modes differ from those of the later decay, or poles decay faster than modes"
     )
     kept = tuple(text for text in decay.warnings if not text.startswith(f"{name}: used from"))
     later = replace(linear, samples=linear.samples[skipped:], start=linear.start + shift, first=linear.first + shift)
-    return replace(decay, linear=later, lateral=decay.lateral[skipped:], warnings=(*kept, begin), is_cut=True)
+    return replace(decay, linear=later, lateral=decay.lateral[skipped:], warnings=(*kept, warning), is_cut=True)
 
 
-def refuse_begin(decay: PreparedDecay, found: DecayBegin) -> InputError:
+def refuse_onset(decay: PreparedDecay, found: DecayOnset) -> InputError:
     """Error of a record without a linear part."""
     measured = (
         f"needs {count_noun(found.transients, 'pole')} with more than {FAST:g} times the decay of its modes"
         if found.transients
-        else f"has other modes than its later parts, {found.excess:.1f} times as much as by noise"
+        else f"has other modes than its later parts: they differ {found.excess:.1f} times as much as noise explains"
     )
     return InputError(
         decay.record.name,

@@ -1,4 +1,4 @@
-"""Begin of the linear decay by the poles, and the rates of the clocks in their covariance."""
+"""Onset of the linear decay by the poles, and the rates of the clocks in their covariance."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.surrogate_drops import build_line_modes, make_record
-from pantocheck.conformance.drops.decay_begin import cut_begin, find_begin, find_transients, refuse_begin
+from pantocheck.conformance.drops.decay_onset import find_onset, find_transients, move_onset, refuse_onset
 from pantocheck.conformance.drops.identify import Identification, identify_modes
 from pantocheck.conformance.drops.line_fit import LineFit, fit_line
 from pantocheck.conformance.drops.pole_refinement import add_clock_rates
@@ -36,34 +36,34 @@ def change_samples(found: Identification, factor: np.ndarray) -> LineFit:
     return fit_line([decay], [(0, record.columns)], [data], fit.poles, [process], fit.band, 4)
 
 
-def test_linear_decay_keeps_its_begin(found: Identification) -> None:
+def test_linear_decay_keeps_its_onset(found: Identification) -> None:
     """Beside ambient motion, the decay begins 2 s after the release; a sample is 0.03 s."""
     decay = found.fit.records[0].decay
     assert decay.linear.start - decay.release.time == pytest.approx(2.0, abs=0.04)
-    assert find_begin(found.fit).excess < 1
+    assert find_onset(found.fit).excess < 1
 
 
 def test_decay_begins_after_a_part_that_biases_the_modes(found: Identification) -> None:
     """Amplitudes that are 2 % larger in the first 1.5 s: from 1 s on, a third of them may stay unseen."""
     linear = found.fit.records[0].decay.linear
     early = np.arange(linear.samples.shape[0]) * linear.dt < 1.5
-    begin = find_begin(change_samples(found, np.where(early, 1.02, 1.0)))
-    assert begin.delay in (1.0, 2.0)
-    assert begin.excess > 1
+    onset = find_onset(change_samples(found, np.where(early, 1.02, 1.0)))
+    assert onset.delay in (1.0, 2.0)
+    assert onset.excess > 1
     decay = found.fit.records[0].decay
-    cut = cut_begin(decay, decay, 2.0)
+    cut = move_onset(decay, decay, 2.0)
     assert cut.linear.start == pytest.approx(linear.start + 2.0, abs=linear.dt / 2)
-    assert any("with an earlier begin, the modes differ" in text for text in cut.warnings)
+    assert any("with an earlier start, the modes differ" in text for text in cut.warnings)
 
 
 def test_decay_whose_modes_never_agree_is_refused(found: Identification) -> None:
     """Amplitudes that change by a fifth every 7 s, to the end of the record."""
     linear = found.fit.records[0].decay.linear
     time = np.arange(linear.samples.shape[0]) * linear.dt
-    begin = find_begin(change_samples(found, 1 + 0.1 * np.sign(np.sin(2 * np.pi * time / 7.0))))
-    assert begin.delay is None
+    onset = find_onset(change_samples(found, 1 + 0.1 * np.sign(np.sin(2 * np.pi * time / 7.0))))
+    assert onset.delay is None
     assert "is not a linear decay: the part from 2 s after the release has other modes" in str(
-        refuse_begin(found.fit.records[0].decay, begin)
+        refuse_onset(found.fit.records[0].decay, onset)
     )
 
 
@@ -83,11 +83,11 @@ def test_decay_begins_when_transients_have_died_out(found: Identification) -> No
     changed = fit_line([decay], [(0, record.columns)], [data], poles, [process], fit.band, 4)
     transients = find_transients(changed)
     assert changed.poles[transients] == pytest.approx([pole], rel=0.02)
-    begin, block = find_begin(changed), changed.blocks[0]
+    onset, block = find_onset(changed), changed.blocks[0]
     ratio = np.abs(block.fit.residues[transients] / block.residue_std[transients]).max()
-    assert begin.delay == pytest.approx(min(np.log(ratio) / 2.0, 8.0), rel=0.1)
-    assert (begin.transients, begin.excess) == (1, 0.0)
-    assert "needs 1 pole with more than 5 times the decay of its modes" in str(refuse_begin(decay, begin))
+    assert onset.delay == pytest.approx(min(np.log(ratio) / 2.0, 8.0), rel=0.1)
+    assert (onset.transients, onset.excess) == (1, 0.0)
+    assert "needs 1 pole with more than 5 times the decay of its modes" in str(refuse_onset(decay, onset))
 
 
 def test_second_of_two_near_poles_changes_no_clock(found: Identification) -> None:
