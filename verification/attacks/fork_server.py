@@ -42,6 +42,7 @@ class CoverageRecorder:
         """Write the seconds of every test, and the tests of every line as the bits of a hexadecimal number."""
         self.pytest_runtest_logstart("")
         self.coverage.stop()
+        del self.seconds[""]  # the loading of the tests
         bits = {test: 1 << number for number, test in enumerate(self.seconds)} | {"": 0}
         data, lines = self.coverage.get_data(), {}
         for name in data.measured_files():

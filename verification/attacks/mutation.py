@@ -18,6 +18,7 @@ import subprocess
 import sys
 import threading
 import tomllib
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -149,19 +150,23 @@ class Run:
         for folder in (self.snapshot, *self.out.glob("worker-*")):
             shutil.rmtree(folder, ignore_errors=True)
 
-    def measure_coverage(self, workers: list[Worker]) -> None:
-        """Run all tests once, shared between the workers; files that were measured before stay."""
-        paths = [path for name in TESTED for path in sorted((self.snapshot / name).rglob("test_*.py"))]
-        tests = [path.relative_to(self.snapshot).as_posix() for path in paths]
-        records = [self.out / f"coverage-{number}.json" for number in range(len(workers))]
+    def measure_coverage(self, workers: "queue.SimpleQueue[Worker]", jobs: int) -> None:
+        """Run all tests once, folder by folder; folders that were measured before stay."""
+        folders: dict[str, list[str]] = {}
+        for path in (path for name in TESTED for path in sorted((self.snapshot / name).rglob("test_*.py"))):
+            test = path.relative_to(self.snapshot)
+            folders.setdefault("-".join(test.parts[1:-1][:2]), []).append(test.as_posix())
 
-        def measure(number: int) -> None:
-            if not records[number].exists():
-                workers[number].run_tests(tests[number :: len(workers)], COVERAGE_S, records[number])
+        def measure(folder: str) -> dict[str, Any]:
+            record = self.out / f"coverage-{folder}.json"
+            if not record.exists():
+                with _borrow(workers) as worker:
+                    worker.run_tests(folders[folder], COVERAGE_S, record)
+            tests: dict[str, Any] = json.loads(record.read_text("utf-8"))
+            return tests
 
-        with ThreadPoolExecutor(len(workers)) as pool:
-            list(pool.map(measure, range(len(workers))))
-        self.covering = CoveringTests(self.snapshot, [json.loads(record.read_text("utf-8")) for record in records])
+        with ThreadPoolExecutor(jobs) as pool:
+            self.covering = CoveringTests(self.snapshot, pool.map(measure, folders))
 
     def judge(self, mutant: Mutant, worker: Worker) -> None:
         """Run the tests that execute the line of a mutant, and store its outcome."""
@@ -174,16 +179,28 @@ class Run:
                 tests[test] = seconds
         # The first test of a file can stand for the time of its fixtures, which another one of it then needs.
         longest_s = sum(self.covering.file_seconds[file] for file in {test.partition("::")[0] for test in tests})
+        limit_s = SLOWER * longest_s + EXTRA_S
         worker.write(mutant.file, mutant.mutate(source))
         try:
-            code, _ = worker.run_tests([*tests], SLOWER * longest_s + EXTRA_S) if tests else (0, 0.0)
+            code, _ = worker.run_tests([*tests], limit_s) if tests else (0, 0.0)
         finally:
             worker.write(mutant.file, source)
         outcome = "untested" if not tests else "timeout" if code is None else "survived" if code == 0 else "killed"
+        if code != 0 and worker.run_tests([*tests], limit_s)[0] != 0:
+            outcome = "failing without the change"
         row = {"order": mutant.order, **vars(mutant), "outcome": outcome, "diff": diff, "tests": list(tests)}
         with self.lock:
             self.outcomes[mutant.order] = row
             _append_row(self.out / "outcomes.jsonl", row)
+
+
+@contextlib.contextmanager
+def _borrow(workers: "queue.SimpleQueue[Worker]") -> Iterator[Worker]:
+    worker = workers.get()
+    try:
+        yield worker
+    finally:
+        workers.put(worker)
 
 
 def _read_rows(path: Path) -> list[dict[str, Any]]:
@@ -206,7 +223,7 @@ def report(folder: str, rows: list[dict[str, Any]]) -> bool:
     share = killed / len(rows)
     print(f"{folder}: {killed} of {len(rows)} killed, {share:.0%} (95 % interval {low:.0%} to {high:.0%})", flush=True)
     for row in rows:
-        if row["outcome"] in {"survived", "untested"}:
+        if row["outcome"] not in {"killed", "timeout"}:
             print(f"  {row['outcome']} {row['file']} {row['operator']} {row['occurrence']}")
             print("\n".join(f"    {line}" for line in row["diff"]), flush=True)
     return share >= SUFFICIENT
@@ -227,18 +244,15 @@ def main() -> int:
     run = Run(options.out.resolve(), options.tests, options.budget, options.renew)
     known = tomllib.loads(Path(__file__).with_name("equivalent_mutants.toml").read_text("utf-8"))["equivalent"]
     all_workers = [Worker.create(run.snapshot, run.out / f"worker-{number}") for number in range(options.jobs)]
-    run.measure_coverage(all_workers)
     workers: queue.SimpleQueue[Worker] = queue.SimpleQueue()
     for worker in all_workers:
         workers.put(worker)
+    run.measure_coverage(workers, options.jobs)
 
     def judge(mutant: Mutant) -> None:
         if mutant.order not in run.outcomes:
-            worker = workers.get()
-            try:
+            with _borrow(workers) as worker:
                 run.judge(mutant, worker)
-            finally:
-                workers.put(worker)
 
     sufficient = True
     for folder, files in list_folders(run.snapshot).items():
