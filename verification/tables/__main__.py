@@ -90,7 +90,6 @@ PROGRAMS = {
         "run vovan2015/* --formats json --out {folder}",
     ),
     "printed-table": Program("tables.printed_table", ("printed-table",)),
-    "scatter": Program("tables.scatter_experiment", ("scatter",)),
     "self-test": Program("tables.self_test_tables", ("self-test-mutants", "self-test-numerical", "self-test-mild")),
     "forgeries": Program(
         "attacks.forgeries", ("forged-results", "forged-pdf", "forged-html", "forged-consistent"), "--jobs 2"
