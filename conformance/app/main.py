@@ -11,6 +11,7 @@ from typing import NoReturn
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.guard import FULL
 from pantocheck.conformance.app.commands.output_settings import accept_all_characters
+from pantocheck.conformance.core.processes import limit_threads
 
 GARBAGE_THRESHOLD = 300_000
 """New objects between two searches for cycles of unused objects; with 700, they take 8 % of an identification.
@@ -23,6 +24,7 @@ def main() -> None:
     gc.set_threshold(GARBAGE_THRESHOLD)
     # Plug-ins would be searched in every installed package, a tenth of the time of `check`.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    limit_threads()
     accept_all_characters()
     for name in ("SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)

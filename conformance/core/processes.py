@@ -95,13 +95,24 @@ def count_processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def limit_threads() -> None:
-    """Let processes that start later use one thread of linear algebra; more would slow them down more than twofold.
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Variables of the environment that libraries of linear algebra read when they are loaded."""
 
-    The libraries read these variables when they are loaded. A value set by the user is kept.
+_CHOSEN: set[str] = set()
+
+
+def limit_threads() -> None:
+    """Let linear algebra use one thread, here if its libraries are not loaded yet, and in processes that start later.
+
+    On matrices of a few hundred unknowns, more threads wait for each other. A value set by the user is kept.
     """
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
+    _CHOSEN.update(name for name in THREAD_VARIABLES if name not in os.environ)
+    os.environ |= dict.fromkeys(_CHOSEN, "1")
+
+
+def list_user_variables() -> dict[str, str]:
+    """Environment without the variables that `limit_threads` has set: that of a program of the user."""
+    return {name: value for name, value in os.environ.items() if name not in _CHOSEN}
 
 
 ORPHAN_GRACE = 1.0

@@ -16,7 +16,7 @@ from types import TracebackType
 from typing import IO
 
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.processes import KILL, adopt_orphans, end_with_parent
+from pantocheck.conformance.core.processes import KILL, adopt_orphans, end_with_parent, list_user_variables
 from pantocheck.conformance.core.texts import DocumentationPage
 
 LONGEST_LINE = 1_000_000
@@ -58,7 +58,7 @@ class Program:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 cwd=folder,
-                env={**os.environ, MARK: self._mark, "TMPDIR": str(folder)},
+                env={**list_user_variables(), MARK: self._mark, "TMPDIR": str(folder)},
                 start_new_session=True,
                 # One call of the C library between fork and exec, which takes no lock of another thread.
                 preexec_fn=end_with_parent if os.name == "posix" else None,  # noqa: PLW1509

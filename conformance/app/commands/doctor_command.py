@@ -19,7 +19,7 @@ from rich.text import Text
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_table, escape_text
 from pantocheck.conformance.cases.case_source import list_case_packages
-from pantocheck.conformance.core.processes import count_processors
+from pantocheck.conformance.core.processes import THREAD_VARIABLES, count_processors, list_user_variables
 from pantocheck.conformance.core.suite_identity import find_suite_commit, suite_digest
 from pantocheck.model.dynamics.core_choice import core_name, find_core_in_c
 from pantocheck.model.kernel_cache import find_kernel_cache
@@ -86,7 +86,7 @@ def list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     yield "fonts", "those of matplotlib and Typst; fonts of the machine are not used"
 
 
-_THREADS = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+_THREADS = ("NUMBA_NUM_THREADS", *THREAD_VARIABLES)
 
 
 def _parse_version(text: str) -> tuple[int, ...]:
@@ -103,7 +103,7 @@ def doctor_command() -> CommandOutput:
 
     Example: pantocheck doctor --json > environment.json
     """
-    facts, requirements = dict(list_facts(os.environ)), list_requirements()
+    facts, requirements = dict(list_facts(list_user_variables())), list_requirements()
     faulty = [requirement for requirement in requirements if not requirement.extra and requirement.state != "installed"]
     names = ("name", "extra", "lowest", "installed", "state")
     packages = [{name: getattr(requirement, name) for name in names} for requirement in requirements]

@@ -348,6 +348,30 @@ def test_certificate_without_charts_is_drawn_without_matplotlib(tmp_path: Path) 
     assert (tmp_path / "out" / "certificate.pdf").stat().st_size > 50_000
 
 
+def test_linear_algebra_has_one_thread_and_programs_of_the_user_keep_their_environment() -> None:
+    """More threads wait for each other: they took 4 % of the processor time of a run on two processors."""
+    code = (
+        "import sys; from pantocheck.conformance.app.main import main\n"
+        "sys.argv = ['pantocheck', 'show', 'en50318-2002/250', '--quiet']\n"
+        "try: main()\n"
+        "except SystemExit: pass\n"
+        "import scipy.linalg; from threadpoolctl import threadpool_info\n"
+        "from pantocheck.conformance.core.processes import list_user_variables as left\n"
+        "print({library['num_threads'] for library in threadpool_info()}, sorted({'OMP_NUM_THREADS'} & {*left()}))"
+    )
+    environment = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+
+    def run(variables: dict[str, str]) -> str:
+        command = [sys.executable, "-c", code]
+        output = subprocess.run(
+            command, check=True, capture_output=True, text=True, timeout=300, env=environment | variables
+        )
+        return output.stdout.splitlines()[-1]
+
+    assert run({}) == "{1} []"
+    assert run({"OMP_NUM_THREADS": "1"}) == "{1} ['OMP_NUM_THREADS']"
+
+
 def test_show_states_requirements_start_and_section() -> None:
     """Both pantographs are 200 m apart; the last one starts at 55 m."""
     name, required = "en50318-2018/ac-simple/320-twin", "en50318-2018/ac-simple/static"
