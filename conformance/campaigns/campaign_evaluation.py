@@ -32,7 +32,7 @@ from pantocheck.conformance.core.figure_data import Chart, Series
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.sourced_table import NO_SOURCE, SourcedTable
 from pantocheck.conformance.grading.results_building import build_suite
-from pantocheck.conformance.quantities.limit_text import format_stated
+from pantocheck.conformance.quantities.limit_text import format_input_number
 from pantocheck.conformance.results.campaign_format import (
     CampaignEnding,
     CampaignResults,
@@ -124,7 +124,7 @@ def evaluate_campaign(
     independent = select_independent(columns, saltelli[0]) if saltelli else columns
     inputs = {key: _describe_axis(axis, key) for axis in design.axes for key in axis.keys}
     for link in design.links:
-        inputs[link.key] = f"{format_stated(link.factor)} x {link.follows} + {format_stated(link.offset)}"
+        inputs[link.key] = f"{format_input_number(link.factor)} x {link.follows} + {format_input_number(link.offset)}"
     maps = list(build_maps(columns, charted, grid))
     verdicts, reasons = count_reasons(store)
     finished, failed = store.count()

@@ -298,12 +298,12 @@ def measure_likeness(number: int, signals: PantographSignals, other: PantographS
     factor = int(np.ceil(INTERPOLATION_RATE_HZ / pair.rate))  # the best shift lies between samples
     forces = [scipy.signal.resample_poly(force, factor, 1, padtype="line") for force in (pair.first, pair.second)]
     band = scipy.signal.butter(4, BAND_HZ[0], "highpass", fs=factor * pair.rate, output="sos")
-    upper = find_part(*(np.asarray(scipy.signal.sosfiltfilt(band, force)) for force in forces))
-    residual = float(np.std(forces[0])) * find_part(*forces)
+    upper = measure_remainder(*(np.asarray(scipy.signal.sosfiltfilt(band, force)) for force in forces))
+    residual = float(np.std(forces[0])) * measure_remainder(*forces)
     return ForceLikeness(number, float(np.sqrt(1 - upper**2)), residual)
 
 
-def find_part(first: RealArray, second: RealArray) -> float:
+def measure_remainder(first: RealArray, second: RealArray) -> float:
     """Remainder of the middle of a series beside the most alike part of another one, over its standard deviation [-].
 
     Args:

@@ -206,7 +206,7 @@ class Panel:
         left, top, width, height = self.bounds
         shares = []
         for scale, values in ((self.x_scale, x), (self.y_scale, y)):
-            low, high = scale.find_limits()
+            low, high = scale.find_ends()
             inside = (values - low) / (high - low)
             shares.append(np.where(np.isinf(values), np.where(values > 0, 1.0, 0.0), inside))
         return left + width * shares[0], top + height * (1 - shares[1])

@@ -65,7 +65,7 @@ class AxisScale:
         if numbers.size:
             self.ends.append((float(numbers.min()), float(numbers.max())))
 
-    def find_limits(self) -> tuple[float, float]:
+    def find_ends(self) -> tuple[float, float]:
         """Ends of the axis, which hold the stated ticks."""
         low, high = (min(end[0] for end in self.ends), max(end[1] for end in self.ends)) if self.ends else (0.0, 1.0)
         if low == high:
@@ -78,7 +78,7 @@ class AxisScale:
 
     def list_ticks(self) -> tuple[list[float], list[str]]:
         """Places and labels of the ticks inside the limits."""
-        low, high = self.find_limits()
+        low, high = self.find_ends()
         chosen = list_round_numbers(low, high, self.intervals) if self.ticks is None else self.ticks
         labels = self.labels or (label_ticks(chosen) if self.write is None else [self.write(tick) for tick in chosen])
         space = 1e-9 * (high - low)

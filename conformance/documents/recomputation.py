@@ -27,7 +27,7 @@ from pantocheck.conformance.documents.statement_check import (
 from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
 from pantocheck.conformance.grading.baseline import bound_drift
 from pantocheck.conformance.grading.case_conformity import find_case_conformity
-from pantocheck.conformance.grading.case_identity import doubt_limit
+from pantocheck.conformance.grading.case_identity import explain_widened_limit
 from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_case, read_participation
 from pantocheck.conformance.grading.reading_grades import list_reading_remarks
 from pantocheck.conformance.grading.start_agreement import list_verification_components
@@ -119,7 +119,7 @@ def _check_criteria(
         where = f"{case.id}, {row.quantity} of pantograph {row.pantograph}"
         unknown = list_unknown_components(case, row, names)
         components = check_components(row, case.uncertainty_components, names)
-        if row.doubt is None and (doubt := doubt_limit(case.id, row)) is not None:
+        if row.doubt is None and (doubt := explain_widened_limit(case.id, row)) is not None:
             yield f"{where}: {doubt}, which the criterion does not state"
         stated = check_criterion_statements(case, row, _gather_errors(row, unknown), trust, rule)
         grade = _check_grade(row, trust, rule, unknown)

@@ -133,7 +133,7 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     requested = choose_verdicts(plan.verdicts, plan.system)
     selection = CaseSelection(plan.trust, requested)
     if not plan.cases:
-        cases = selection.keep_counting(cases)
+        cases = selection.select_counted(cases)
         if not cases:
             raise InputError("cases", f"no limit counts at trust '{plan.trust}'", "Name a case, or lower the trust.")
     own = _keep_named(cases, plan.cases, catalogue) if plan.cases else list(filter(selection.counts, cases))

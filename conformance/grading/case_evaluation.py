@@ -17,7 +17,7 @@ from pantocheck.conformance.core.criterion import ComponentName, Criterion
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.near_limit import QUANTILE_95
 from pantocheck.conformance.core.trust import Trust
-from pantocheck.conformance.grading.case_identity import doubt_limit
+from pantocheck.conformance.grading.case_identity import explain_widened_limit
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
 from pantocheck.conformance.grading.record_uncertainty import (
     add_bounds,
@@ -188,7 +188,7 @@ class CaseEvaluation:
     def grade_limits(self, lowest_trust: Trust, rule: DecisionRule = SIMPLE) -> list[Criterion]:
         """Grade the delivery by every limit of the case."""
         return [
-            grade_limit(limit, self.values, lowest_trust, rule=rule, doubt=doubt_limit(self.case.id, limit))
+            grade_limit(limit, self.values, lowest_trust, rule=rule, doubt=explain_widened_limit(self.case.id, limit))
             for limit in self.case.limits
         ]
 

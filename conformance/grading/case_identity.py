@@ -104,7 +104,7 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     return f"{name}: {', and '.join(parts)}" if parts else None
 
 
-def doubt_limit(case_id: str, limit: Limit | Requirement) -> str | None:
+def explain_widened_limit(case_id: str, limit: Limit | Requirement) -> str | None:
     """Reason why a pass by a limit of the user does not count: it widens one of the library. None: it counts."""
     stated = list_library_limits(case_id) if limit.trust == "own" else ()
     widened = next((old for old in stated if old.target == limit.target and _is_wider(old, limit)), None)

@@ -37,7 +37,7 @@ class CaseSelection:
     requested: tuple[VerdictName, ...]
     """Verdicts that decide."""
 
-    def keep_counting(self, cases: Sequence[Case]) -> list[Case]:
+    def select_counted(self, cases: Sequence[Case]) -> list[Case]:
         """Cases that count and have no `on_request`, and the cases that they require."""
         kept = {case.id for case in cases if self.counts(case) and not case.file.on_request}
         needed = {required for case in cases if case.id in kept for required in case.file.requires}

@@ -78,7 +78,7 @@ class Participation:
         bounds: list[Verdict] = ["unconfirmed" for case in lacking if case.id not in self.information]
         return judge_parts([self.judge_run([(case.id, case.verdict) for case in cases], system), *bounds])
 
-    def judge_one_verdict(self, name: VerdictName, cases: Sequence[CaseResult], system: str) -> Verdict | None:
+    def judge_verdict(self, name: VerdictName, cases: Sequence[CaseResult], system: str) -> Verdict | None:
         """One of the two verdicts of a run; None if no case takes part in it."""
         verdicts = [(case.id, verdict) for case in cases if (verdict := self._case_verdict(name, case)) is not None]
         return self.judge_run(verdicts, system) if verdicts else None
@@ -106,7 +106,7 @@ class Participation:
         skipped.
         """
         cases, system = [self.decide_case(case) for case in results.cases], results.system.name
-        by_name = {name: self.judge_one_verdict(name, cases, system) for name in get_args(VerdictName)}
+        by_name = {name: self.judge_verdict(name, cases, system) for name in get_args(VerdictName)}
         overall = self.judge_cases(cases, system)
         compared: list[tuple[str, Verdict]] = [
             (case.id, "skip" if case.baseline is None else case.baseline.verdict) for case in cases

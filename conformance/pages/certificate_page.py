@@ -29,8 +29,8 @@ from pantocheck.conformance.pages.first_page import (
     MOST_CASES,
     build_answers,
     build_case_index,
-    group_reasons,
     has_more_reasons,
+    list_reason_sections,
     plan_first_page,
 )
 from pantocheck.conformance.pages.quantity_tables import SHIFT_KEY, UNCERTAINTY_KEY, list_definitions
@@ -82,7 +82,7 @@ def build_dated_certificate(results: Results, date: int) -> doc.Document:
     shown = list_shown_cases(cases, first_page)
     anchors = {one.case.id: one.anchor for one in shown}
     answers = build_answers(prepared, anchors, first_page, (digest_results(results), date))
-    reasons = group_reasons(prepared) if has_more_reasons(prepared) else ()
+    reasons = list_reason_sections(prepared) if has_more_reasons(prepared) else ()
     return doc.Document(
         title=f"{name_verdict(header.verdict)} – {HEADING} – {name_system(prepared)}",
         header=replace(header, subject=""),

@@ -241,7 +241,7 @@ def _describe_result(results: Results, first_page: FirstPage) -> Iterator[doc.Bl
         yield _build_value_table(rows, first_page)
 
 
-def group_reasons(results: Results) -> tuple[doc.Section, ...]:
+def list_reason_sections(results: Results) -> tuple[doc.Section, ...]:
     """Reasons of a verdict under headings, those of the steps of a procedure first."""
     steps = () if results.procedure is None else list_step_reasons(results.procedure)
     return (*steps, *list_reasons(results))
@@ -249,12 +249,12 @@ def group_reasons(results: Results) -> tuple[doc.Section, ...]:
 
 def has_more_reasons(results: Results) -> bool:
     """Whether there are more reasons than page 1 states."""
-    return any(len(_read_sentences(section)) > MOST_REASONS for section in group_reasons(results))
+    return any(len(_read_sentences(section)) > MOST_REASONS for section in list_reason_sections(results))
 
 
 def _list_reasons(results: Results, first: Sequence[CaseResult]) -> Iterator[tuple[str, str]]:
     """Headings and first sentences of the reasons."""
-    sections = group_reasons(results)
+    sections = list_reason_sections(results)
     if not sections:
         rows = [
             row for case in results.cases for name in ("criteria", "verification") for row in list_criteria(case, name)

@@ -85,7 +85,7 @@ def draw_instant(
             rise = field[_align_frame(motion, frame, other)] / 1000
             height = np.interp(x, curve.x_m, curve.y_m) + ENLARGED * rise
             axes.plot(x, height, LineStyle(colour, WIRE_WIDTHS[curve.kind], "--"))
-    low = axes.y_scale.find_limits()[0]
+    low = axes.y_scale.find_ends()[0]
     for owner, part in enumerate(motion.pantographs, 1):
         place = part.start_m + motion.speed_m_s * motion.step_s * frame
         if shape.supports_m[0] <= place <= shape.supports_m[-1]:

@@ -10,7 +10,12 @@ from pydantic import BaseModel
 
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.texts import BIDIRECTIONAL, TEMPLATES, UNSHOWABLE, is_control
-from pantocheck.conformance.quantities.limit_text import ROUNDED_DIGITS, format_graded, format_rounded, format_stated
+from pantocheck.conformance.quantities.limit_text import (
+    ROUNDED_DIGITS,
+    format_graded,
+    format_input_number,
+    format_rounded,
+)
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.motion_format import CodedField
 
@@ -68,7 +73,7 @@ def format_percent(ratio: float | None, digits: int = ROUNDED_DIGITS) -> str:
 
 def format_plain(value: float | None) -> str:
     """An input number in its shortest form: `20`, `0.001`."""
-    return "–" if value is None else replace_minus(format_stated(value))
+    return "–" if value is None else replace_minus(format_input_number(value))
 
 
 def format_signed(value: float) -> str:

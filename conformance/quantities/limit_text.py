@@ -44,7 +44,7 @@ def format_rounded(value: float, digits: int = ROUNDED_DIGITS) -> str:
     return (f"{value:.{digits - 1}e}" if "e" in text else text).rstrip(".")
 
 
-def format_stated(value: float) -> str:
+def format_input_number(value: float) -> str:
     """An input number in its shortest form: `20`, `0.001`."""
     return f"{value:.12g}"
 
@@ -87,7 +87,7 @@ def format_bounds(lower: float | None, upper: float | None) -> str:
     Returns:
         `26 to 31`, `<= 225`, `>= 30`, `= 0` or `none`.
     """
-    return _join_bounds(*(None if bound is None else format_stated(bound) for bound in (lower, upper)))
+    return _join_bounds(*(None if bound is None else format_input_number(bound) for bound in (lower, upper)))
 
 
 def format_graded(value: float | None, lower: float | None, upper: float | None) -> GradedText:
@@ -110,7 +110,7 @@ def format_graded(value: float | None, lower: float | None, upper: float | None)
 
 def _format_bound(bound: float, digits: int) -> str:
     """A stated bound in its shortest form, a computed one rounded."""
-    return format_stated(bound) if float(f"{bound:.{STATED_DIGITS}g}") == bound else format_rounded(bound, digits)
+    return format_input_number(bound) if float(f"{bound:.{STATED_DIGITS}g}") == bound else format_rounded(bound, digits)
 
 
 def _keeps_order(numbers: tuple[float | None, ...], texts: tuple[str | None, ...]) -> bool:

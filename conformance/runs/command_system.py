@@ -30,7 +30,7 @@ from pantocheck.conformance.runs.protocol_messages import (
     encode_message,
     parse_message,
 )
-from pantocheck.conformance.runs.record_folder import film_shapes, read_case_record
+from pantocheck.conformance.runs.record_folder import read_case_record, read_motion
 from pantocheck.conformance.runs.system import Delivered, Errored, Outcome, Skipped, note_case_version
 
 START_LIMIT = 120.0
@@ -180,13 +180,13 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
         raise DeliveryRefused(f"the sidecar names the table {sidecar.file!r}, the answer {answer.record.table.file!r}")
     if sidecar.case != case.id:
         raise DeliveryRefused(f"the record is of case {sidecar.case!r}; expected {case.id!r}")
-    film = None
+    drawn = None
     if answer.record.shapes is not None and not case.is_static:
         shapes = _check_file(answer.record.shapes, folder)
         if sidecar.shapes is None or sidecar_path.parent / sidecar.shapes != shapes:
             found = f"the sidecar names the shapes {sidecar.shapes!r}, the answer {answer.record.shapes.file!r}"
             raise DeliveryRefused(found)
-        film = film_shapes(case, record, shapes)
+        drawn = read_motion(case, record, shapes)
     run = sidecar.run
     if run.wall_s is None:
         run = run.model_copy(update={"wall_s": wall})
@@ -199,8 +199,8 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
         case_digest=sidecar.case_digest,
         digest=record_digest(sidecar_path, table_path),
         start=sidecar.start,
-        line_shape=None if film is None else film.line_shape,
-        motion=None if film is None else film.motion,
+        line_shape=None if drawn is None else drawn.line_shape,
+        motion=None if drawn is None else drawn.motion,
     )
 
 

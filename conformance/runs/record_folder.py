@@ -24,7 +24,7 @@ from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.runs.system import Delivered, Errored, Outcome, Skipped, note_case_version
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.runs.delivered_film import DeliveredFilm
+    from pantocheck.conformance.runs.delivered_motion import DeliveredMotion
 
 
 @dataclass(frozen=True)
@@ -47,11 +47,12 @@ class RecordFolder:
         if isinstance(opened, RecordSummary):
             return _deliver_summary(opened, case, record_digest(path))
         record, sidecar = read_case_record(path, case)
-        film = None if sidecar.shapes is None else film_shapes(case, record, locate_table(path, sidecar.shapes, None))
+        name = sidecar.shapes
+        drawn = None if name is None else read_motion(case, record, locate_table(path, name, None))
         return Delivered(
             record,
-            line_shape=None if film is None else film.line_shape,
-            motion=None if film is None else film.motion,
+            line_shape=None if drawn is None else drawn.line_shape,
+            motion=None if drawn is None else drawn.motion,
             run=sidecar.run,
             start=sidecar.start,
             notes=note_case_version(sidecar.case_digest),
@@ -61,11 +62,11 @@ class RecordFolder:
         )
 
 
-def film_shapes(case: Case, record: Record, path: Path) -> "DeliveredFilm":
+def read_motion(case: Case, record: Record, path: Path) -> "DeliveredMotion":
     """Moving picture from delivered shapes of the wires; the model of the line and HDF5 load for them alone."""
     with refuse_missing_package(f"shapes '{path.name}'"):
-        from pantocheck.conformance.runs.delivered_film import film_delivery
-    return film_delivery(case, record, path)
+        from pantocheck.conformance.runs.delivered_motion import build_delivered_motion
+    return build_delivered_motion(case, record, path)
 
 
 def _deliver_summary(summary: RecordSummary, case: Case, digest: str) -> Outcome:

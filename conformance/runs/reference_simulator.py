@@ -20,7 +20,7 @@ from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs.case_run import run_passage, run_starts, split_passages
 from pantocheck.conformance.runs.core_requirement import COMPILATION, announce_compilation, require_core
-from pantocheck.conformance.runs.passage_film import code_film, plan_film
+from pantocheck.conformance.runs.passage_motion import code_frames, plan_frames
 from pantocheck.conformance.runs.resolution import (
     list_mesh_frequencies,
     list_model_uncertainty,
@@ -101,13 +101,13 @@ class ReferenceSimulator:
         discretisation = case.file.discretisation
         line = discretise_line(case.line, discretisation.element_m)
         shape = build_line_shape(case.line, case.analysed_spans, line)
-        stretch = None if case.is_static else plan_film(case, line, shape, discretisation)
+        stretch = None if case.is_static else plan_frames(case, line, shape, discretisation)
         request = None if stretch is None else stretch.request
         progress = _begin_run(case, steps)
         delivered, uplift_forces, frames = _deliver(case, discretisation, None, progress, self.start_forces, request)
         motion = None
         if stretch is not None and frames is not None and delivered.record is not None:
-            motion = code_film(case, line, stretch, frames, delivered.record)
+            motion = code_frames(case, line, stretch, frames, delivered.record)
         return replace(delivered, line_shape=shape, motion=motion), uplift_forces
 
     def run_unrefined(self, case: Case, follow: ShareCallback = ignore_progress) -> Delivered:
@@ -136,7 +136,7 @@ class UnrefinedSimulator(ReferenceSimulator):
 
 
 @dataclass(frozen=True)
-class FilmingSimulator(ReferenceSimulator):
+class SimulatorWithMotion(ReferenceSimulator):
     """Reference simulator that runs a case once, with its moving picture."""
 
     def run(self, case: Case) -> Delivered:

@@ -55,7 +55,7 @@ class Explorer {
       this.show(passage);
       if (this.next) return this.start();
       this.status.textContent = `Simulated in ${formatNumber(passage.computing_s, 2)} s. Drawing the moving picture …`;
-      const motion = await ask("/film", { number: passage.number }, signal);
+      const motion = await ask("/motion", { number: passage.number }, signal);
       results.cases.forEach((setting) => setting.number === passage.number && Object.assign(setting, { motion }));
       for (const [number, setting] of results.cases.entries()) if (setting.motion === motion) await this.pictures.show(number);
       this.status.textContent = `Simulated in ${formatNumber(passage.computing_s, 2)} s. ${this.countOutside()}`;

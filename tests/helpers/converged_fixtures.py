@@ -5,9 +5,11 @@ from typing import Any
 
 import pytest
 
-from pantocheck.conformance.cases import converged_file
+from pantocheck.conformance.app.pytest_plugin import collection
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import ConvergedFile
+from pantocheck.conformance.documents import library_check
+from pantocheck.conformance.grading import case_selection, case_verification
 from pantocheck.conformance.quantities.evaluation import Value
 
 StateConverged = Callable[..., ConvergedFile]
@@ -46,7 +48,8 @@ def build_converged(case: Case, values: Mapping[int, Mapping[str, Value]], **cha
 def state_converged(monkeypatch: pytest.MonkeyPatch) -> StateConverged:
     """Converged values of the stated cases; no other case has any."""
     known: dict[str, ConvergedFile] = {}
-    monkeypatch.setattr(converged_file, "_read_library", lambda: known)
+    for reader in (collection, library_check, case_selection, case_verification):
+        monkeypatch.setattr(reader, "find_converged", known.get)
 
     def state(case: Case, values: Mapping[int, Mapping[str, Value]], **changes: Any) -> ConvergedFile:
         known[case.id] = build_converged(case, values, **changes)

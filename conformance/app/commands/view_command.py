@@ -18,7 +18,7 @@ from pantocheck.conformance.cases.library import load_entry
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.drops.drop_film import film_drop
+from pantocheck.conformance.drops.drop_scene import build_drop_scene
 from pantocheck.conformance.drops.drop_simulation import require_mass_drop
 from pantocheck.conformance.execution.runner import identify_system
 from pantocheck.conformance.grading.case_grading import grade_case
@@ -27,7 +27,7 @@ from pantocheck.conformance.pages.report_writers import write_report
 from pantocheck.conformance.pages.view_page import build_drop_view, build_view
 from pantocheck.conformance.results.results_format import Results, SystemIdentity
 from pantocheck.conformance.results.results_reading import read_results
-from pantocheck.conformance.runs.reference_simulator import FilmingSimulator
+from pantocheck.conformance.runs.reference_simulator import SimulatorWithMotion
 from pantocheck.conformance.runs.system import Delivered
 
 
@@ -85,7 +85,7 @@ def _view_drops(case: Case, out: Path) -> CommandOutput:
     with follow_steps("mass drops", drops) as progress:
         scenes = []
         for number in range(1, drops + 1):
-            scenes.append(film_drop(case, number))
+            scenes.append(build_drop_scene(case, number))
             progress.finish_task()
     shown = [scene for scene in scenes if scene is not None]
     if not shown:
@@ -97,7 +97,7 @@ def _view_drops(case: Case, out: Path) -> CommandOutput:
 
 def _build_single(subject: str, changed: list[str], catalogue: Catalogue) -> Results:
     """Results of one case that was simulated, or of one record."""
-    simulator = FilmingSimulator()
+    simulator = SimulatorWithMotion()
     case, outcome = open_subject(subject, changed, catalogue, simulator.run)
     result = grade_case(case, outcome, "secondary")
     identity = identify_system(simulator)

@@ -58,7 +58,7 @@ class SettingRequest(ResultsPart):
     values: Annotated[dict[str, FiniteNumber], Field(max_length=100)]
 
 
-class FilmRequest(ResultsPart):
+class MotionRequest(ResultsPart):
     """Request of the moving picture of a simulated setting."""
 
     number: int
@@ -224,8 +224,8 @@ def _simulate(server: ExploreServer, request: SettingRequest) -> str:
     return server.explored.simulate(request.values).model_dump_json()
 
 
-def _film(server: ExploreServer, request: FilmRequest) -> str:
-    motion = server.explored.film(request.number)
+def _build_motion(server: ExploreServer, request: MotionRequest) -> str:
+    motion = server.explored.build_motion(request.number)
     return "null" if motion is None else motion.model_dump_json()
 
 
@@ -253,7 +253,7 @@ def _note(server: ExploreServer, path: Path, command: str) -> str:
 
 REQUESTS: Mapping[str, RequestKind] = {
     "/simulate": RequestKind(TypeAdapter(SettingRequest), _simulate),
-    "/film": RequestKind(TypeAdapter(FilmRequest), _film),
+    "/motion": RequestKind(TypeAdapter(MotionRequest), _build_motion),
     "/case": RequestKind(TypeAdapter(CaseRequest), _save_case),
     "/campaign": RequestKind(TypeAdapter(CampaignRequest), _save_campaign),
 }

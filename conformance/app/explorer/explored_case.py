@@ -27,7 +27,7 @@ from pantocheck.conformance.results.exploration_format import (
     Slider,
 )
 from pantocheck.conformance.results.motion_format import PassageMotion
-from pantocheck.conformance.runs.passage_film import film_passage
+from pantocheck.conformance.runs.passage_motion import build_passage_motion
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model.description.failures import SimulationError
@@ -125,7 +125,7 @@ class ExploredCase:
             self._latest = Setting(number, case, delivered)
             return self._describe(self._latest, changes)
 
-    def film(self, number: int) -> PassageMotion | None:
+    def build_motion(self, number: int) -> PassageMotion | None:
         """Moving picture of the simulated setting of a request; None if there is none.
 
         Raises:
@@ -142,7 +142,7 @@ class ExploredCase:
             shape = build_line_shape(case.line, case.analysed_spans, line)
             if delivered.record is None:
                 return None
-            return film_passage(
+            return build_passage_motion(
                 case, line, shape, discretisation, delivered.record, tuple(delivered.uplift_forces or ()), progress
             )
 

@@ -9,8 +9,8 @@ from pantocheck.conformance.comparison.force_difference import (
     COPY_CORRELATION,
     REPEATED_CORRELATION,
     ForceLikeness,
-    find_part,
     measure_likeness,
+    measure_remainder,
 )
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
@@ -31,11 +31,11 @@ def make_signals(seed: int) -> PantographSignals:
 def test_remainder_is_that_of_the_best_shift() -> None:
     """A shifted copy leaves nothing; noise of variance v leaves sqrt(v / (1 + v)) of the standard deviation."""
     force, noise = (np.random.default_rng(seed).standard_normal(4000) for seed in (1, 2))
-    assert find_part(force, 3.0 * force + 5.0) == pytest.approx(0.0, abs=1e-5)
-    assert find_part(np.roll(force, 7), force) == pytest.approx(0.0, abs=1e-5)
-    assert find_part(force, force + 0.5 * noise) == pytest.approx(np.sqrt(0.2), abs=0.02)
-    assert find_part(force, noise) > 0.99
-    assert find_part(force, np.ones(4000)) == 1.0
+    assert measure_remainder(force, 3.0 * force + 5.0) == pytest.approx(0.0, abs=1e-5)
+    assert measure_remainder(np.roll(force, 7), force) == pytest.approx(0.0, abs=1e-5)
+    assert measure_remainder(force, force + 0.5 * noise) == pytest.approx(np.sqrt(0.2), abs=0.02)
+    assert measure_remainder(force, noise) > 0.99
+    assert measure_remainder(force, np.ones(4000)) == 1.0
 
 
 def test_copies_are_found_and_another_passage_is_not() -> None:

@@ -43,12 +43,12 @@ def test_labels_are_those_of_matplotlib(ticks: list[float]) -> None:
 def test_scale_holds_its_data_and_its_stated_ticks() -> None:
     scale = AxisScale(margin=0.05)
     scale.include([10.0, 30.0, float("nan")])
-    assert scale.find_limits() == (9.0, 31.0)
+    assert scale.find_ends() == (9.0, 31.0)
     scale.limits, scale.ticks = (0, None), [0, 40]
-    assert scale.find_limits() == (0, 40)
+    assert scale.find_ends() == (0, 40)
     flat = AxisScale()
     flat.include([3.0])
-    assert flat.find_limits()[0] < 3.0 < flat.find_limits()[1]
+    assert flat.find_ends()[0] < 3.0 < flat.find_ends()[1]
 
 
 def test_glyphs_and_widths_are_those_of_the_font() -> None:

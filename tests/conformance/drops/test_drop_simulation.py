@@ -16,9 +16,9 @@ from helpers.command_line import pantocheck
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
-from pantocheck.conformance.drops.drop_film import film_drop
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropDescription, DropRecord
+from pantocheck.conformance.drops.drop_scene import build_drop_scene
 from pantocheck.conformance.drops.drop_simulation import decimate, require_mass_drop, simulate_drop
 from pantocheck.conformance.execution.plan import Plan, prepare_plan
 from pantocheck.conformance.line.elements.damping import Damping
@@ -279,7 +279,7 @@ def test_impossible_campaigns_are_refused(case_path: Path, options: tuple[str, s
 def test_moving_picture_agrees_with_the_simulated_drop(drop_case: DropCase) -> None:
     """Rises at the sensors after the release, within the stated error and half a step of the coding (at most 1 mm)."""
     case = load_case(drop_case({"mass_drop.record_s": 3.0}))
-    scene, decay = film_drop(case, 1), simulate_drop(case, 1).decay
+    scene, decay = build_drop_scene(case, 1), simulate_drop(case, 1).decay
     assert scene is not None
     [motion] = scene.motions
     time = motion.start_s + motion.step_s * np.arange(motion.wires[0].rise_mm.frames)

@@ -89,7 +89,7 @@ def test_requests_of_others_are_refused(server: ExploreServer, headers: dict[str
 
 def test_own_origin_is_accepted(server: ExploreServer) -> None:
     origin = f"http://127.0.0.1:{server.server_port}"
-    assert ask(server, "/film", {"number": -1}, Origin=origin)[0] == 409  # no such setting, but an answer
+    assert ask(server, "/motion", {"number": -1}, Origin=origin)[0] == 409  # no such setting, but an answer
 
 
 @pytest.mark.parametrize(
@@ -139,7 +139,7 @@ def test_values_are_those_of_the_simulator_to_the_last_bit(server: ExploreServer
     for row in rows:
         assert row["is_inside"] == (row["lower"] <= row["value"] <= row["upper"])
     assert answer["command"] == f"pantocheck run {CASE} --set speed_km_h=285.0 --set pantograph.uplift_force_N=130.0"
-    status, motion, _ = ask(server, "/film", {"number": answer["number"]})
+    status, motion, _ = ask(server, "/motion", {"number": answer["number"]})
     assert status == 200
     assert motion["speed_m_s"] == pytest.approx(285 / 3.6)
     assert "verdict" not in json.dumps(answer)

@@ -45,7 +45,7 @@ Samples = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class FilmedStretch:
+class DrawnStretch:
     """Drawn part of a line, and the instants of its picture."""
 
     wires: tuple[tuple[int, int], ...]
@@ -63,7 +63,7 @@ class CodedForm:
     """Step of the rises."""
     nth_frame: int
     nth_station: int
-    """Of which frames and stations one is kept."""
+    """Every n-th frame and station is kept."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ CODED_FORMS = tuple(
 """Forms of a picture: the first one that is small enough is taken."""
 
 
-def film_passage(
+def build_passage_motion(
     case: Case,
     line: DiscretisedLine,
     shape: LineShape,
@@ -109,27 +109,27 @@ def film_passage(
     Returns:
         Picture; None if another program moves a pantograph, or if no form is small enough.
     """
-    stretch = plan_film(case, line, shape, discretisation)
+    stretch = plan_frames(case, line, shape, discretisation)
     if stretch is None:
         return None
     passage = build_passage(case, line, discretisation, uplift_forces)
     frames = integrate_passage(line, replace(passage, frames=stretch.request, watched=()), progress).frames
-    return None if frames is None else code_film(case, line, stretch, frames, record, progress)
+    return None if frames is None else code_frames(case, line, stretch, frames, record, progress)
 
 
-def plan_film(
+def plan_frames(
     case: Case, line: DiscretisedLine, shape: LineShape, discretisation: Discretisation
-) -> FilmedStretch | None:
-    """Stretch and instants of the picture of a passage; None if another program moves a pantograph, or without any."""
+) -> DrawnStretch | None:
+    """Choose stretch and frames of a picture; None if another program moves a pantograph, or if no frame remains."""
     time_step = discretisation.time_step_s
     steps = _choose_steps(case, time_step, round((case.end - case.start) / case.speed / time_step))
     return None if case.fmus or not steps else choose_stretch(line, shape, steps)
 
 
-def code_film(
+def code_frames(
     case: Case,
     line: DiscretisedLine,
-    stretch: FilmedStretch,
+    stretch: DrawnStretch,
     frames: Frames,
     record: Record,
     progress: ShareCallback = ignore_progress,
@@ -145,12 +145,12 @@ def code_film(
 
 
 def take_small_form(code_motion: Callable[[CodedForm], PassageMotion]) -> PassageMotion | None:
-    """Picture in the first form that is small enough; None: there is none."""
+    """Take the first form whose picture is small enough; None: every form is too large."""
     motions = map(code_motion, CODED_FORMS)
     return next((motion for motion in motions if len(motion.model_dump_json()) <= MOST_LETTERS), None)
 
 
-def choose_stretch(line: DiscretisedLine, shape: LineShape, steps: Sequence[int]) -> FilmedStretch:
+def choose_stretch(line: DiscretisedLine, shape: LineShape, steps: Sequence[int]) -> DrawnStretch:
     """Wires and stations of the drawn line, and the completed steps of its frames."""
     first, last = shape.supports_m[0], shape.supports_m[-1]
     views = [(wire, x) for wire, x, _ in LineView(line, "z", first, last).wires() if x.size > 1]
@@ -163,7 +163,7 @@ def choose_stretch(line: DiscretisedLine, shape: LineShape, steps: Sequence[int]
     rows = [line.mesh.row_of[wire.name, "z"] for wire, _ in views]
     request = FrameRequest(tuple(steps), tuple(rows), tuple(kept))
     ends = tuple((float(x[0]), float(x[-1])) for _, x in views)
-    return FilmedStretch(tuple(enumerate(rows)), ends, request)
+    return DrawnStretch(tuple(enumerate(rows)), ends, request)
 
 
 def _choose_steps(case: Case, time_step: float, steps: int) -> range:
@@ -182,7 +182,7 @@ def space_frames(first: int, last: int, time_step: float) -> range:
 def _code_motion(
     case: Case,
     line: DiscretisedLine,
-    stretch: FilmedStretch,
+    stretch: DrawnStretch,
     frames: Frames,
     signals: dict[int, PantographSignals],
     record: Record,
@@ -209,7 +209,7 @@ def _code_motion(
     )
 
 
-def code_line(line: DiscretisedLine, stretch: FilmedStretch, frames: Frames, form: CodedForm) -> CodedLine:
+def code_line(line: DiscretisedLine, stretch: DrawnStretch, frames: Frames, form: CodedForm) -> CodedLine:
     """Code the wires and droppers of a picture in one form."""
     nth_frame = form.nth_frame
     x = line.mesh.position[list(stretch.request.stations)]

@@ -13,10 +13,10 @@ from pantocheck.conformance.cases.library import find_entries, load_entry
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.runs.command_system import DeliveryRefused, read_delivery
-from pantocheck.conformance.runs.delivered_film import film_delivery
+from pantocheck.conformance.runs.delivered_motion import build_delivered_motion
 from pantocheck.conformance.runs.protocol_messages import DeliveredAnswer
 from pantocheck.conformance.runs.record_folder import open_record_folder
-from pantocheck.conformance.runs.reference_simulator import FilmingSimulator
+from pantocheck.conformance.runs.reference_simulator import SimulatorWithMotion
 from pantocheck.conformance.runs.system import Delivered
 
 KINDS = ("contact_wire", "messenger_wire")
@@ -30,7 +30,7 @@ def case() -> Case:
 
 @pytest.fixture(scope="module")
 def simulated(case: Case) -> Delivered:
-    outcome = FilmingSimulator().run(case)
+    outcome = SimulatorWithMotion().run(case)
     assert isinstance(outcome, Delivered)
     return outcome
 
@@ -72,11 +72,11 @@ def test_shapes_of_the_reference_simulator_come_back(case: Case, simulated: Deli
     """Half a step of 0.1 mm at the kept points; between them straight lines miss the wire by the stated error."""
     path = write_shapes(tmp_path / "shapes.h5", list_arrays(simulated))
     assert simulated.record is not None
-    film = film_delivery(case, simulated.record, path)
-    first, second = simulated.motion, film.motion
+    delivered = build_delivered_motion(case, simulated.record, path)
+    first, second = simulated.motion, delivered.motion
     assert first is not None
     assert second is not None
-    assert film.line_shape == simulated.line_shape
+    assert delivered.line_shape == simulated.line_shape
     assert len(second.wires) == len(first.wires) == 2
     frames = second.wires[0].rise_mm.frames
     begin = round((second.start_s - first.start_s) / first.step_s)
@@ -119,7 +119,7 @@ def test_damaged_shapes_are_refused(
             arrays[name] = change
     assert simulated.record is not None
     with pytest.raises(InputError) as error:
-        film_delivery(case, simulated.record, write_shapes(tmp_path / "shapes.h5", arrays))
+        build_delivered_motion(case, simulated.record, write_shapes(tmp_path / "shapes.h5", arrays))
     assert message in str(error.value).replace("\n  ", " ").replace(": ", ", ")
 
 

@@ -11,7 +11,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.results.motion_format import LineScene, PassageMotion
 from pantocheck.conformance.runs.case_run import integrate_mass_drop
-from pantocheck.conformance.runs.passage_film import (
+from pantocheck.conformance.runs.passage_motion import (
     CodedForm,
     choose_stretch,
     code_line,
@@ -21,12 +21,12 @@ from pantocheck.conformance.runs.passage_film import (
 from pantocheck.model.dynamics.mass_drop import discretise_drop
 
 BEFORE_S, AFTER_S = 0.2, 10.0
-"""Filmed time before and after the release."""
+"""Shown time before and after the release."""
 
 SYMBOLS = [DrawnSymbol(name="sensor", marker="s"), DrawnSymbol(name="mass", marker="o")]
 
 
-def film_drop(case: Case, number: int) -> LineScene | None:
+def build_drop_scene(case: Case, number: int) -> LineScene | None:
     """Moving picture of a drop of a case on its line.
 
     Args:

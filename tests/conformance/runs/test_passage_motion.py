@@ -13,38 +13,38 @@ from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.motion_format import CodedField, MovingWire, PassageMotion, code_field
-from pantocheck.conformance.runs import passage_film
+from pantocheck.conformance.runs import passage_motion
 from pantocheck.conformance.runs.case_run import run_passage
 
 FORCES = (120.0,)
 
 
-def film(case: Case) -> tuple[Record, LineShape, PassageMotion]:
+def simulate(case: Case) -> tuple[Record, LineShape, PassageMotion]:
     discretisation = case.file.discretisation
     line = discretise_line(case.line, discretisation.element_m)
     shape = build_line_shape(case.line, case.analysed_spans, line)
     record = run_passage(case, line, discretisation, FORCES).record
-    motion = passage_film.film_passage(case, line, shape, discretisation, record, FORCES)
+    motion = passage_motion.build_passage_motion(case, line, shape, discretisation, record, FORCES)
     assert motion is not None
     return record, shape, motion
 
 
 def test_graded_passage_with_frames_is_the_same_passage_and_gives_the_same_picture(case_250: Case) -> None:
     """Bit by bit: the steps stop at the frames, and go on from the same state."""
-    record, shape, motion = film(case_250)
+    record, shape, motion = simulate(case_250)
     discretisation = case_250.file.discretisation
     line = discretise_line(case_250.line, discretisation.element_m)
-    stretch = passage_film.plan_film(case_250, line, shape, discretisation)
+    stretch = passage_motion.plan_frames(case_250, line, shape, discretisation)
     assert stretch is not None
     run = run_passage(case_250, line, discretisation, FORCES, frames=stretch.request)
     assert run.frames is not None
     assert_array_equal(run.record.force, record.force)
-    assert passage_film.code_film(case_250, line, stretch, run.frames, run.record) == motion
+    assert passage_motion.code_frames(case_250, line, stretch, run.frames, run.record) == motion
 
 
 def test_picture_agrees_with_the_record(case_250: Case) -> None:
     """Rises within the stated error, head within its rounding of 0.05 mm, and the band by its RMS (2 % for 250 Hz)."""
-    record, shape, motion = film(case_250)
+    record, shape, motion = simulate(case_250)
     frames = motion.wires[0].rise_mm.frames
     at = np.searchsorted(record.time, motion.start_s + motion.step_s * np.arange(frames) - 1e-6)
     assert 1 / motion.step_s == pytest.approx(100)
@@ -70,10 +70,10 @@ def test_picture_agrees_with_the_record(case_250: Case) -> None:
 
 
 def test_coarser_form_keeps_the_bound(case_250: Case, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = film(case_250)[2]
+    whole = simulate(case_250)[2]
     bound = len(whole.model_dump_json()) - 1
-    monkeypatch.setattr(passage_film, "MOST_LETTERS", bound)
-    coarse = film(case_250)[2]
+    monkeypatch.setattr(passage_motion, "MOST_LETTERS", bound)
+    coarse = simulate(case_250)[2]
     assert len(coarse.model_dump_json()) <= bound < 400_000
     assert coarse.error_mm >= whole.error_mm - 0.1
 

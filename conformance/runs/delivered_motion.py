@@ -15,21 +15,21 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.wire_shapes import WireShapes, read_wire_shapes
 from pantocheck.conformance.results.motion_format import MovingPantograph, MovingWire, PassageMotion, code_field
-from pantocheck.conformance.runs.passage_film import CodedForm, Samples, code_pantograph, code_wire, take_small_form
+from pantocheck.conformance.runs.passage_motion import CodedForm, Samples, code_pantograph, code_wire, take_small_form
 
 PlacedWires = list[tuple[int, DrawnCurve, RealArray, RealArray]]
 """Index and curve of wires in the drawn line, with positions and rises."""
 
 
 @dataclass(frozen=True)
-class DeliveredFilm:
+class DeliveredMotion:
     """Line at rest, and the picture of the passage over it; None: no form of the picture is small enough."""
 
     line_shape: LineShape
     motion: PassageMotion | None
 
 
-def film_delivery(case: Case, record: Record, path: Path) -> DeliveredFilm:
+def build_delivered_motion(case: Case, record: Record, path: Path) -> DeliveredMotion:
     """Moving picture of a delivered passage over the line of its case at rest.
 
     Args:
@@ -60,7 +60,7 @@ def film_delivery(case: Case, record: Record, path: Path) -> DeliveredFilm:
     shapes, at = shapes.select(shown), samples[shown]
     wires = _place_wires(shape, shapes, where)
     motion = take_small_form(lambda form: _code_motion(case, record, shapes, wires, at, form))
-    return DeliveredFilm(shape, motion)
+    return DeliveredMotion(shape, motion)
 
 
 def _place_wires(shape: LineShape, shapes: WireShapes, where: str) -> PlacedWires:
