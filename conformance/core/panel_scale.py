@@ -78,9 +78,6 @@ class AxisScale:
 
     def list_ticks(self) -> tuple[list[float], list[str]]:
         """Places and labels of the ticks inside the limits."""
-        low, high = self.find_ends()
-        chosen = list_round_numbers(low, high, self.intervals) if self.ticks is None else self.ticks
-        labels = self.labels or (label_ticks(chosen) if self.write is None else [self.write(tick) for tick in chosen])
-        space = 1e-9 * (high - low)
-        shown = [pair for pair in zip(chosen, labels, strict=True) if low - space <= pair[0] <= high + space]
-        return [tick for tick, _ in shown], [label if self.has_labels else "" for _, label in shown]
+        ticks = list_round_numbers(*self.find_ends(), self.intervals) if self.ticks is None else [*self.ticks]
+        labels = self.labels or (label_ticks(ticks) if self.write is None else [self.write(tick) for tick in ticks])
+        return ticks, [label if self.has_labels else "" for label in labels]

@@ -20,7 +20,9 @@ def test_every_quantity_of_any_run_is_compared() -> None:
     first = run("first", {"mean_force_N": 120.0, "std_force_N": 30.0, "max_force_N": 200.0}, {"mean_force_N": 0.3})
     other = run("other", {"mean_force_N": 119.4, "std_force_N": 31.0, "min_force_N": 50.0}, {"mean_force_N": 0.4})
     third = run("third", {"mean_force_N": 120.5}, {"mean_force_N": 0.4})
-    (owner,) = compare_subjects([[first], [other], [third]], None).cases[0].owners
+    comparison = compare_subjects([[first], [other], [third]], None)
+    assert "scenes" not in comparison.model_dump()
+    (owner,) = comparison.cases[0].owners
     found = {item.name: item for item in owner.quantities}
     assert set(found) == {"mean_force_N", "std_force_N", "max_force_N", "min_force_N"}
     assert found["std_force_N"].difference[1:] == (1.0, None)

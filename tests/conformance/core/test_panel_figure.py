@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 from pantocheck.conformance.core.font_file import find_fonts, measure_text, read_advances, replace_missing_glyphs
 from pantocheck.conformance.core.panel_figure import PanelFigure
-from pantocheck.conformance.core.panel_marks import MARKER_CORNERS, LineStyle, thin_path
+from pantocheck.conformance.core.panel_marks import DASHES, MARKER_CORNERS, LineStyle, thin_path
 from pantocheck.conformance.core.panel_scale import AxisScale, label_ticks, list_round_numbers
 
 INK = LineStyle("#000000")
@@ -101,6 +101,13 @@ def test_points_lie_at_their_data_and_texts_stay_texts() -> None:
     assert areas[0] == "M36 46.8L108 46.8L108 39.6L36 39.6z"
     assert len([path for path in root.iter() if path.get("fill") == "#123456"]) == len(MARKER_CORNERS) + 1
     assert not re.search(r"nan|inf", figure.write())
+
+
+def test_markers_are_symmetric_and_every_dash_is_seen() -> None:
+    for name in MARKER_CORNERS.keys() - set("<>"):
+        shape = {(round(x, 9), round(y, 9)) for x, y in MARKER_CORNERS[name]}
+        assert shape == {(-x, y) for x, y in shape}, name
+    assert min(part for dashes in DASHES.values() for part in dashes) >= 1
 
 
 def test_curve_breaks_where_a_value_is_missing() -> None:

@@ -191,8 +191,8 @@ def test_links_to_other_files_are_not_followed(tmp_path: Path) -> None:
 
 
 def test_measured_tables_are_read_from_sheets(tmp_path: Path) -> None:
-    """A column of texts is missing; a text that is a number counts; an empty cell is a missing value."""
-    rows = [["x_m", "height_m", "remark"], [1.5, 5.25, date(2020, 5, 1)], ["2,5", None, "a"], [3, "nan", None]]
+    """A column of texts is missing; a text that is a number counts, even alone; an empty cell is a missing value."""
+    rows = [["x_m", "height_m", "remark"], [1.5, "5.25", date(2020, 5, 1)], ["2,5", None, "a"], [3, "nan", None]]
     path = write_rows(tmp_path / "a.xlsx", rows)
     for each in (path, convert_to_ods(write_rows(tmp_path / "b.xlsx", [row[:2] for row in rows]))):
         (table,) = read_tables(each, (), 100)

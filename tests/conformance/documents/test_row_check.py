@@ -1,5 +1,6 @@
 """Rows of the consistency checks: outcomes follow from numbers and thresholds, numbers from the embedded signals."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
@@ -162,3 +163,12 @@ def test_doubtful_record_of_two_pantographs_states_its_worst_part(two_pantograph
     assert isinstance(row.basis, Measured)
     assert (row.check, row.basis.part, row.outcome) == ("dynamics", "pantograph 2", "contradiction")
     assert row.basis.number == pytest.approx(1 / 6, abs=0.01)
+
+
+def test_utilisation_is_one_at_the_threshold() -> None:
+    """The nearest threshold counts; a number of zero is infinitely far below the lowest one."""
+    facts = {"measure": "gain", "unit": "", "thresholds": {"doubt": 2.0, "contradiction": 4.0}}
+    for side, number, expected in (
+        ("above", 2.0, 1.0), ("above", 4.0, 2.0), ("below", 4.0, 1.0), ("below", 2.0, 2.0), ("below", 0.0, math.inf)
+    ):  # fmt: skip
+        assert Measured.model_validate(facts | {"side": side, "number": number}).utilisation == expected

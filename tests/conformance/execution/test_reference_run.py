@@ -13,6 +13,7 @@ from pantocheck.conformance.app.commands import run_command as command_module
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.execution import runner
 from pantocheck.conformance.execution.runner import add_reference, run_cases
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
@@ -64,6 +65,22 @@ def test_values_of_the_reference_are_added_and_nothing_else_changes(both: tuple[
     assert beside.model_copy(update={"cases": without}) == alone
     assert "reference" not in alone.to_dict()["cases"][0]
     assert find_discrepancies(beside) == find_discrepancies(alone)
+
+
+def test_force_of_another_section_is_not_drawn(
+    both: tuple[Results, Results], case: Case, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A section that only begins later has a force; one that ends before, or begins after, has none."""
+    [result] = both[0].cases
+    trace = result.traces["1"]
+    length = trace.position_m[-1] - trace.position_m[0]
+    for shift, owners in ((length / 2, {"1"}), (length, set()), (-length, set())):
+        moved = trace.model_copy(update={"position_m": [x + shift for x in trace.position_m]})
+        reference = both[0].model_copy(update={"cases": [result.model_copy(update={"traces": {"1": moved}})]})
+        monkeypatch.setattr(runner, "run_cases", lambda *_, reference=reference: reference)
+        [found] = add_reference(both[0], [case], jobs=1).cases
+        assert found.reference is not None
+        assert found.reference.force_20_N.keys() == owners
 
 
 def test_reference_states_why_it_did_not_run(both: tuple[Results, Results], case: Case) -> None:

@@ -9,6 +9,7 @@ from helpers.example_passage import with_passage
 from helpers.example_results import example
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.case_facts_format import BaselineComparison
+from pantocheck.conformance.results.procedure_format import Evidence
 from pantocheck.conformance.results.results_format import CaseConformity, Results
 
 
@@ -18,6 +19,11 @@ def test_case_without_a_key_of_its_verdict_is_refused(key: str) -> None:
     del results["cases"][0][key]
     with pytest.raises(ValidationError, match=key):
         Results.model_validate(results)
+
+
+def test_evidence_that_does_not_state_a_pass_has_none() -> None:
+    facts = {"id": "250", "line": "a", "pantographs": [], "speed_km_h": 250.0, "spacing_m": []}
+    assert not Evidence.model_validate(facts).passed
 
 
 @pytest.mark.parametrize("key", ["simulated_s", "wall_s", "dt_s", "element_m"])
