@@ -10,3 +10,6 @@ PASSAGES = (
     "en50318-2018/ac-stitched/275",
     "en50318-2018/ac-stitched/320",
 )
+
+OTHER_PASSAGES = ("force-law/300", "vovan2015/contact-force")
+"""Library cases with a train that run on request."""

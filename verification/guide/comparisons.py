@@ -19,38 +19,32 @@ def compare_relative(
         tolerance: Largest relative deviation.
         reason: Reason of the tolerance.
     """
-    computed, expected = map(float, values)
-    deviation = (computed - expected) / abs(expected)
-    return CheckedValue(
-        key=key,
-        quantity=quantity,
-        unit=unit,
-        computed=computed,
-        expected=expected,
-        kind="relative",
-        deviation=deviation,
-        tolerance=tolerance,
-        reason=reason,
-        agrees=abs(deviation) <= tolerance,
-    )
+    return _compare(key, quantity, unit, values, tolerance, reason, abs(float(values[1])))
 
 
 def compare_absolute(
     key: str, quantity: str, unit: str, values: tuple[float, float], tolerance: float, reason: str
 ) -> CheckedValue:
     """Compare a value with an expected one; parameters as in `compare_relative`, the deviation in the unit."""
+    return _compare(key, quantity, unit, values, tolerance, reason, None)
+
+
+def _compare(
+    key: str, quantity: str, unit: str, values: tuple[float, float], tolerance: float, reason: str, scale: float | None
+) -> CheckedValue:
     computed, expected = map(float, values)
+    deviation = (computed - expected) / (1.0 if scale is None else scale)
     return CheckedValue(
         key=key,
         quantity=quantity,
         unit=unit,
         computed=computed,
         expected=expected,
-        kind="absolute",
-        deviation=computed - expected,
+        kind="absolute" if scale is None else "relative",
+        deviation=deviation,
         tolerance=tolerance,
         reason=reason,
-        agrees=abs(computed - expected) <= tolerance,
+        agrees=abs(deviation) <= tolerance,
     )
 
 

@@ -39,16 +39,13 @@ class Program(NamedTuple):
 
 PROGRAMS = {
     "convergence-of-cases": Program("tables.convergence_of_cases", ("convergence-of-cases",)),
-    "convergence": Program(
-        "tables.convergence", tuple(f"convergence-{name}" for name in ("both", "element", "step", "stagger"))
-    ),
     "accuracy-and-cost": Program(
         "speed.accuracy_and_cost", ("accuracy-and-cost",), "--out {docs}/accuracy-and-cost.svg"
     ),
     "run-in": Program("tables.run_in", ("run-in-275", "run-in-320")),
     "force-law": Program("tables.law_balance", ("force-law-level", "force-law-gradient")),
     "overlap": Program(
-        "tables.overlap_passages", tuple(f"overlap-{name}" for name in ("forces", "difference", "mesh", "cost"))
+        "tables.overlap_passages", tuple(f"overlap-{name}" for name in ("forces", "difference", "mesh"))
     ),
     "filter-and-band": Program("tables.filter_and_band", ("filters", "bands")),
     "readings": Program("tables.readings", ("readings-forces", "readings-bands", "readings-editions")),
@@ -97,7 +94,6 @@ PROGRAMS = {
     "adversary": Program("attacks.adversary", ("adversary",)),
     "table-sensitivity": Program("tables.table_sensitivity", ("table-sensitivity",)),
     "contact-findings": Program("tables.contact_findings", ("contact-findings",)),
-    "contact-laws": Program("tables.contact_table", ("contact-laws",)),
     "constraint-limit": Program("tables.constraint_limit", ("constraint-limit",)),
     "pantograph-fit": Program("tables.pantograph_fit", ("pantograph-fit",)),
     "identification": Program("tables.identification", ("identification-scores",), "{drops} --made-up 6"),

@@ -13,9 +13,7 @@ import importlib.util
 import json
 import sys
 import time
-import warnings
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,9 +25,10 @@ from pantocheck.conformance.drops.identify import Identification, identify_modes
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import whiten
 from pantocheck.conformance.results.identified_modes import MeasuredLine
+from verification.guide.peers.subspace_modes import identify_by_subspace
 
 Real = NDArray[np.float64]
-SSI_ROWS, SSI_ORDER, SSI_RATE = 60, 160, 25.0  # block rows, largest model order, rate of the decimated record [Hz]
+SSI_ORDER = 160  # largest model order of pyOMA-2, 2.5 times the number of modes
 
 
 def main() -> None:
@@ -98,7 +97,8 @@ def score(name: str, records: tuple[DropRecord, ...], truth: Real, bound: Real, 
     line(name, "pantocheck", ours, truth, bound, time.perf_counter() - begin)
     if peers:
         begin = time.perf_counter()
-        theirs = subspace(found)
+        theirs = identify_by_subspace(found, SSI_ORDER)
+        theirs = theirs[np.isfinite(theirs[:, 0])]
         line(name, "pyOMA-2", theirs, truth, bound, time.perf_counter() - begin)
 
 
@@ -119,40 +119,6 @@ def line(name: str, method: str, found: Real, truth: Real, bound: Real, seconds:
         f"| {times:.2f} | {seconds:.1f} |",
         flush=True,
     )
-
-
-def subspace(found: Identification) -> Real:
-    """Modes of pyOMA-2's covariance-driven SSI on the same stretch: stable poles of the largest order, (n, 2).
-
-    Input as a user would choose it: the decimated linear decay, and an order of 2.5 times the number of modes. Stable
-    poles of the largest order also appear (0.5 % in frequency, 10 % in damping) five orders below.
-    """
-    from pyoma2.algorithms import SSI
-    from pyoma2.setup import SingleSetup
-
-    longest = max((record.decay.linear for record in found.fit.records), key=lambda decay: decay.duration)
-    step = max(1, round(1 / (longest.dt * SSI_RATE)))
-    setup = SingleSetup(longest.samples[::step], fs=1 / (longest.dt * step))
-    algorithm = SSI(name="ssi", br=SSI_ROWS, ordmax=SSI_ORDER, method="cov", calc_unc=False)
-    setup.add_algorithms(algorithm)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        setup.run_by_name("ssi")
-    result: Any = algorithm.result
-    last, before = (poles_of_order(result, order) for order in (-1, -6))
-    stable = [
-        pole
-        for pole in last
-        if len(before) and np.any((abs(before[:, 0] / pole[0] - 1) < 0.005) & (abs(before[:, 1] / pole[1] - 1) < 0.1))
-    ]
-    return np.array(stable) if stable else np.zeros((0, 2))
-
-
-def poles_of_order(result: Any, order: int) -> Real:
-    """Frequencies and damping ratios of one model order, (n, 2)."""
-    frequency, damping = result.Fn_poles[:, order], result.Xi_poles[:, order]
-    known = np.isfinite(frequency) & np.isfinite(damping) & (damping > 0)
-    return np.unique(np.column_stack([frequency[known], damping[known]]), axis=0)
 
 
 if __name__ == "__main__":

@@ -19,9 +19,9 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.trust import StudiedPart
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.model.description.failures import SimulationError
+from verification.formulations.library_passages import OTHER_PASSAGES
 from verification.speed.passage_lines import QUANTITIES
 from verification.tables.contact_findings import find_changes
-from verification.tables.contact_table import OTHER_PASSAGES
 from verification.tables.input_variations import (
     NotApplicable,
     list_changes,

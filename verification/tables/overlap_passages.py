@@ -11,7 +11,6 @@ import math
 import os
 import time
 from dataclasses import replace
-from itertools import pairwise
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -23,10 +22,6 @@ from pantocheck.conformance.line.elements.tension_section import OverlapTable, S
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage
 from pantocheck.model.discretisation.discretised_line import max_wave_speed
-from pantocheck.model.dynamics.active_window import build_window_arrays
-from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
-from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
-from pantocheck.model.dynamics.simulation import start_motion
 from verification.speed.passage_lines import ac_simple, passage
 
 SPANS, RISE, SPAN = 22, 0.5, 55.0
@@ -143,30 +138,6 @@ def print_convergence(case: Case) -> None:
         )
 
 
-def print_cost(case: Case) -> None:
-    """Cost of four simulated spans with two pantographs against the number of spans of the line."""
-    print("\n| sections | spans | catenary | finite elements | arrays and start | process time / simulated time |")
-    print("| --: | --: | --: | --: | --: | --: |")
-    for sections in (1, 3, 5, 16):
-        here = sectioned(case, sections, 3) if sections > 1 else replace(case, line=case.line.shorten(SPANS))
-        times = [time.process_time()]
-        catenary = build_catenary(here.line)
-        times.append(time.process_time())
-        line = discretise(catenary, ELEMENT)
-        times.append(time.process_time())
-        way = replace(passage(here, line, STEP, 2, 5 * SPAN, math.inf), kept_behind=KEPT_BEHIND, watched=())
-        kernel = build_kernel_arrays(line, STEP, build_window_arrays(line, way))
-        steps = round(way.duration / STEP)
-        ratios = []
-        for _ in range(3):
-            motion, train = start_motion(line, kernel, way)
-            times.append(time.process_time())
-            simulate_steps(kernel, motion, train, np.zeros(steps), allocate_recording(line, (), steps, 2))
-            ratios.append((time.process_time() - times[-1]) / way.duration)
-        built = " | ".join(f"{after - before:.2f} s" for before, after in pairwise(times[:4]))
-        print(f"| {sections} | {here.line.geometry.spans} | {built} | {min(ratios):.3f} |", flush=True)
-
-
 def main() -> None:
     """Measure and print."""
     argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
@@ -174,7 +145,6 @@ def main() -> None:
     print_overlaps(case)
     print_difference(case)
     print_convergence(case)
-    print_cost(case)
 
 
 if __name__ == "__main__":

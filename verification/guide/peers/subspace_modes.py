@@ -70,7 +70,7 @@ def build_known_drop() -> DropRecord:
     return DropRecord("known", "known", DROP_RATE, samples, channels, drop=drop, line=MeasuredLine(spans_m=(60.0,) * 6))
 
 
-def identify_by_subspace(found: Identification) -> RealArray:
+def identify_by_subspace(found: Identification, order: int = SSI_ORDER) -> RealArray:
     """Modes of pyOMA-2 on the same linear decay: stable poles of the largest order, frequency [Hz] and damping ratio.
 
     Stable poles also appear five orders below, within 0.5 % in frequency and 10 % in damping.
@@ -81,7 +81,7 @@ def identify_by_subspace(found: Identification) -> RealArray:
     decay = max((record.decay.linear for record in found.fit.records), key=lambda decay: decay.duration)
     step = max(1, round(1 / (decay.dt * SSI_RATE)))
     setup = SingleSetup(decay.samples[::step], fs=1 / (decay.dt * step))
-    algorithm = SSI(name="ssi", br=SSI_ROWS, ordmax=SSI_ORDER, method="cov", calc_unc=False)
+    algorithm = SSI(name="ssi", br=SSI_ROWS, ordmax=order, method="cov", calc_unc=False)
     setup.add_algorithms(algorithm)
     logging.getLogger("pyoma2").setLevel(logging.WARNING)
     with warnings.catch_warnings(), redirect_stderr(io.StringIO()):  # progress bars
