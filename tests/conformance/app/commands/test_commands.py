@@ -276,76 +276,61 @@ PAGES = {"matplotlib", "jinja2", "numba", "typst", "pypdf"}
 UNUSED = {"scipy.linalg", "scipy.sparse", "numpy.f2py", "asyncio", "ssl", "multiprocessing", "urllib.request"}
 
 
-def list_loaded(words: str, folder: Path) -> list[set[str]]:
-    """Modules that are loaded after each of several commands in one fresh process."""
+def list_loaded(program: str, *arguments: str, folder: Path) -> list[set[str]]:
+    """Modules that are loaded wherever a program in a fresh process calls `show`; it has the function `app`."""
     code = (
-        "import sys; from pantocheck.conformance.app.commands.command_list import app\n"
-        "for words in sys.argv[1].split(';'):\n"
-        "    try: app(words.split())\n"
-        "    except SystemExit as end: assert end.code in (0, 1), words\n"
-        "    print('modules after', words, *sys.modules)"
+        "import sys; from pantocheck.conformance.app.commands.command_list import app, load_command\n"
+        "def show(): print('modules', *sys.modules)\n"
     )
-    command = [sys.executable, "-c", code, words]
+    command = [sys.executable, "-c", code + program, *arguments]
     result = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300, cwd=folder)
-    loaded = [set(line.split()) for line in result.stdout.splitlines() if line.startswith("modules after")]
-    assert len(loaded) == len(words.split(";"))
-    return loaded
+    return [set(line.split()) for line in result.stdout.splitlines() if line.startswith("modules")]
 
 
-def test_commands_of_an_editor_load_neither_plotting_nor_signal_processing_nor_the_compiler(tmp_path: Path) -> None:
-    """Their imports take longer than these commands; nor do the formats of other files load."""
-    words = (
-        "new pantograph a.toml;check a.toml;cases;show en50318-2002/250;new line b.toml;new case c.toml --line b.toml"
-    )
-    loaded = list_loaded(f"{words};check b.toml c.toml", tmp_path)
-    assert loaded[-1].isdisjoint(HEAVY | PAGES)  # the statics of a line need equation solvers
-    assert loaded[-2].isdisjoint(UNUSED)
+RUN_COMMANDS = """
+for words in sys.argv[1:]:
+    try: app(words.split())
+    except SystemExit as end: assert end.code in (0, 1), words
+    show()
+"""
+PUBLISHED = "run en50318-2002/250 --system record:en50318-2002/known-passing-code"
+
+
+def test_commands_load_only_what_they_need(tmp_path: Path) -> None:
+    """Imports of other libraries take longer than these commands. Each process keeps what its last commands loaded."""
+    words = ["new pantograph a.toml", "check a.toml", "cases", "show en50318-2002/250", "new line b.toml"]
+    words += ["new case c.toml --line b.toml", "check b.toml c.toml"]
+    words += ["run en50318-2002/250 --formats json --jobs 1 --out values", f"{PUBLISHED} --out out"]
+    *loaded, case, checked, computed, drawn = list_loaded(RUN_COMMANDS, *words, folder=tmp_path)
     assert not {name for name in loaded[1] if name.endswith((".case_file", ".line_file", ".force_quantities"))}
+    assert case.isdisjoint(UNUSED)
+    # Files of an editor load no format of another file; the statics of a line need equation solvers.
+    assert checked.isdisjoint(HEAVY | PAGES)
     formats = {place.rpartition(".")[0] for place in {**READ_FORMATS.places, **WRITTEN_FORMATS.places}.values()}
     read = {"pantograph.pantograph_file", "cases.case_file", "cases.limits", "line.line_file", "line.elements.damping"}
-    assert {name for name in formats if f"pantocheck.conformance.{name}" in loaded[-1]} <= read
+    assert {name for name in formats if f"pantocheck.conformance.{name}" in checked} <= read
+    # A run without pages needs neither filters of scipy nor plotting.
+    assert computed.isdisjoint(HEAVY | {"matplotlib", "typst", "h5py"})
+    assert ("numba" in computed) is (choose_core().library is None)
+    # A certificate without charts is drawn without matplotlib.
+    assert (drawn - computed).isdisjoint(HEAVY | {"matplotlib", "numba"})
+    assert (tmp_path / "out" / "certificate.pdf").stat().st_size > 50_000
 
 
 def test_verification_of_results_loads_no_solver_and_no_network(tmp_path: Path) -> None:
     """Its values follow from numbers that the file holds."""
-    source = ("--system", "record:en50318-2002/known-passing-code")
-    pantocheck("run", "en50318-2002/250", *source, "--out", tmp_path / "out", "--formats", "json")
-    (loaded,) = list_loaded("verify out/results.json", tmp_path)
+    pantocheck(*PUBLISHED.split(), "--out", tmp_path / "out", "--formats", "json")
+    (loaded,) = list_loaded(RUN_COMMANDS, "verify out/results.json", folder=tmp_path)
     assert loaded.isdisjoint(HEAVY | PAGES | UNUSED)
 
 
-@pytest.mark.parametrize("command", ["pantograph check", "runs import", "runs assess", "run", "assess", "compare"])
-def test_command_loads_no_page_writer_and_no_measurement_format_before_it_needs_one(command: str) -> None:
+def test_no_command_loads_a_page_writer_or_a_measurement_format_before_it_needs_one(tmp_path: Path) -> None:
     """`runs assess` grades sections, and `pantograph check` couples an FMU: neither draws before it has results."""
-    code = "import sys; from pantocheck.conformance.app.commands.command_list import load_command\n"
-    code += "load_command(sys.argv[1]); print(*sys.modules)"
-    result = subprocess.run(
-        [sys.executable, "-c", code, command], check=True, capture_output=True, text=True, timeout=300
-    )
-    assert (HEAVY | PAGES | {"h5py", "pyarrow", "nptdms", "asammdf"}).isdisjoint(result.stdout.split())
-
-
-def test_run_without_pages_needs_neither_filters_of_scipy_nor_plotting(tmp_path: Path) -> None:
-    """Their imports take longer than the passages of the case."""
-    code = (
-        "import sys; from pantocheck.conformance.app.commands.command_list import app\n"
-        "try: app(['run', 'en50318-2002/250', '--formats', 'json', '--jobs', '1', '--out', sys.argv[1]])\n"
-        "except SystemExit: pass\n"
-        "print(*sys.modules)"
-    )
-    command = [sys.executable, "-c", code, str(tmp_path / "out")]
-    output = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300)
-    assert HEAVY.isdisjoint(output.stdout.split())
-    assert {"matplotlib", "typst", "h5py"}.isdisjoint(output.stdout.split())
-    assert ("numba" in output.stdout.split()) is (choose_core().library is None)
-
-
-def test_certificate_without_charts_is_drawn_without_matplotlib(tmp_path: Path) -> None:
-    """Importing it takes longer than all figures."""
-    source = ("--system", "record:en50318-2002/known-passing-code")
-    (loaded,) = list_loaded(" ".join(("run", "en50318-2002/250", *source, "--out", "out")), tmp_path)
-    assert loaded.isdisjoint(HEAVY | {"matplotlib", "numba"})
-    assert (tmp_path / "out" / "certificate.pdf").stat().st_size > 50_000
+    names = ["pantograph check", "runs import", "runs assess", "run", "assess", "compare"]
+    program = "for name in sys.argv[1:]: load_command(name); show()"
+    loaded = list_loaded(program, *names, folder=tmp_path)
+    heavy = HEAVY | PAGES | {"h5py", "pyarrow", "nptdms", "asammdf"}
+    assert {name: found & heavy for name, found in zip(names, loaded, strict=True) if found & heavy} == {}
 
 
 def test_linear_algebra_has_one_thread_and_programs_of_the_user_keep_their_environment() -> None:

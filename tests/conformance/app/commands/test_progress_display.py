@@ -124,11 +124,15 @@ def test_compilation_is_announced_at_once_in_a_log(capsys: pytest.CaptureFixture
 def test_compilation_for_a_mass_drop_is_announced(
     caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A drop has no step of its own for the compiler, so its warning is the only word."""
+    """A drop has no step of its own for the compiler, so its warning before the simulation is the only word."""
+
+    def stop(*_: object) -> None:
+        raise SimulationError(caplog.messages[-1])
+
     monkeypatch.setattr(core_requirement, "needs_compilation", lambda: True)
-    case = select_cases(["vovan2015/mass-drop/stand-in"])[-1]
-    simulate_drop(case, 1)
-    assert COMPILATION in caplog.messages
+    monkeypatch.setattr("pantocheck.model.dynamics.mass_drop.simulate_mass_drop", stop)
+    with pytest.raises(SimulationError, match=f"^{COMPILATION}$"):
+        simulate_drop(select_cases(["vovan2015/mass-drop/stand-in"])[-1], 1)
 
 
 def test_remaining_time_is_not_extrapolated_from_nothing() -> None:
