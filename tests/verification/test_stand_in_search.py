@@ -14,6 +14,7 @@ def line() -> stand_in_search.GroupedLine:
     return stand_in_search.group_line(case)
 
 
+@pytest.mark.thorough
 def test_search_is_repeatable_without_findings_that_are_held_out(line: stand_in_search.GroupedLine) -> None:
     """All candidates of all rounds, about 3 s: nothing else shows that no number was chosen by hand."""
     (case,) = select_cases([stand_in_search.CASE])

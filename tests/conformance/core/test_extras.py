@@ -71,31 +71,15 @@ def test_packages_and_extras_are_those_of_the_project() -> None:
     assert everything == f"pantocheck[{','.join(name for name in PROJECT['optional-dependencies'] if name in extras)}]"
 
 
-def test_every_file_but_readers_and_time_steps_loads_without_extras(tmp_path: Path) -> None:
-    """The import rule behind the core installation, whose time steps run in C if it has a compiler."""
-    code = f"""
-import importlib, json, pathlib
-failed = {{}}
-for top in ("model", "conformance"):
-    for path in sorted((pathlib.Path({str(ROOT)!r}) / top).rglob("*.py")):
-        name = ".".join(path.relative_to({str(ROOT)!r}).with_suffix("").parts).removesuffix(".__init__")
-        try:
-            importlib.import_module("pantocheck." + name)
-        except ModuleNotFoundError as error:
-            failed[name] = str(error.name)
-print(json.dumps(failed))
-"""
-    failed = run_without_extras(code, folder=tmp_path)
-    assert set(failed) == {CODE_OF_NUMBA, *NEEDS_AN_EXTRA}
-    assert failed[CODE_OF_NUMBA] in {"numba", "llvmlite"}
-
-
 def test_record_is_graded_and_verified_without_extras(tmp_path: Path, wave: type[Wave], case_250: Case) -> None:
-    """The core installation writes all default formats but PDF, with a remark; a full one finds the same page."""
+    """The core installation writes all default formats but PDF, with a remark; a full one finds the same page.
+
+    Every file but readers and time steps loads: the import rule behind that installation, whose time steps run in C.
+    """
     record = wave().run(case_250).record
     write_record(tmp_path / "records" / "r250.csv", record, case=case_250.id)
     code = """
-import json
+import importlib, json, pathlib
 from typer.testing import CliRunner
 from pantocheck.conformance.app.commands.command_list import app
 
@@ -115,9 +99,18 @@ commands = {
     "compare": run("compare", "report/results.json", "report/results.json", "--out", "comparison"),
 }
 loaded = sorted(name for name in ("numba", "typst", "pyuff", "h5py", "pypdf") if sys.modules.get(name) is not None)
-print(json.dumps({"loaded": loaded, **commands}))
+failed, root = {}, pathlib.Path(sys.argv[1])
+for path in sorted(path for top in ("model", "conformance") for path in (root / top).rglob("*.py")):
+    name = ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__")
+    try:
+        importlib.import_module("pantocheck." + name)
+    except ModuleNotFoundError as error:
+        failed[name] = str(error.name)
+print(json.dumps({"loaded": loaded, "failed": failed, **commands}))
 """
-    done = run_without_extras(code, folder=tmp_path)
+    done = run_without_extras(code, str(ROOT), folder=tmp_path)
+    assert set(done["failed"]) == {CODE_OF_NUMBA, *NEEDS_AN_EXTRA}
+    assert done["failed"][CODE_OF_NUMBA] in {"numba", "llvmlite"}
     assert done["loaded"] == []
     no_pdf = "remark: no PDF is written, because the package typst is not installed. "
     exit_code, _, errors = done["run"]

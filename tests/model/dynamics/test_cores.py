@@ -162,6 +162,7 @@ def test_structures_are_the_named_tuples_of_python() -> None:
     assert {"KernelArrays", "ContactWorkspace", "Train", "Motion", "Recording"} <= checked
 
 
+@pytest.mark.thorough
 @needs_compiler
 def test_both_cores_compute_the_same(
     core: Core, use_core: Callable[[Core | str], None], monkeypatch: pytest.MonkeyPatch
@@ -169,7 +170,8 @@ def test_both_cores_compute_the_same(
     """To 1e-9 of the largest value: both stop their sweeps at changes of 1e-9 N of about 100 N, and round differently.
 
     Heads start downwards: contact is lost and regained, droppers slacken, joints slide and hit their stops. One test
-    has all simulations, so that one process compiles the kernels.
+    has all simulations, so that one process compiles the kernels, which takes 20 s; the tests of the reference kernel
+    compare the core of the installation with full matrices in every run.
     """
     use_core(core)
     computed = {name: simulation() for name, simulation in SIMULATIONS.items()}

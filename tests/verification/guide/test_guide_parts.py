@@ -118,6 +118,7 @@ def test_every_element_of_a_line_and_every_contact_law_is_a_row() -> None:
     assert {"spring", *(contact.law for contact in CONTACTS.values())} == set(laws)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("change", ["masses", "springs"])
 def test_row_of_an_element_finds_one_that_is_left_out(change: str) -> None:
     """Without its element the second formulation is beyond both tolerances; 0.5 m apart its points leave 0.7 %."""

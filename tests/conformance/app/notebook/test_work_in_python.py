@@ -77,7 +77,7 @@ def test_a_changed_number_is_found(two_pantograph_case: Case, tmp_path: Path) ->
 
 def test_fit_finds_the_pantograph_of_a_response(tmp_path: Path) -> None:
     """Noise of 0.1 %; 95 % intervals, so that a value may lie at twice its half-width by chance only."""
-    pantograph = rig.read_pantograph()
+    pantograph = rig.read_pantograph("en50318-2002/pantograph.toml")
     response = rig.add_noise(rig.chain_stiffness(pantograph), seed=1, modulus=1e-3, phase_deg=0.05)
     table = rig.write_response(tmp_path, rig.polar_columns(response, "N_m"), kind="dynamic_stiffness")
     fit = fit_pantograph(table, masses=len(pantograph.chain.masses_kg))
