@@ -129,6 +129,8 @@ def test_long_keys_and_values_are_shortened_in_messages() -> None:
         ("pantograph[2].uplift_force_N=100", "the case has 1 pantograph"),
         ("pantograph[0].uplift_force_N=100", "is not of the form KEY=VALUE"),
         ("line.droppers.x_m[12]=55", "droppers.x_m has 9 items"),
+        ("line=3", "key line: found 3, expected text in quotes"),
+        ("pantograph=3", "key pantograph[1]: found 3, expected a table"),
         ("speed_km_h[1]=3", "key speed_km_h[1]: is not a list"),
         ("speed_km_h", "is not of the form KEY=VALUE"),
         ("speed_km_h=3 0", "'3 0' is not a value"),

@@ -100,6 +100,7 @@ def test_points_lie_at_their_data_and_texts_stay_texts() -> None:
     areas = [path.get("d") for path in root.iter() if path.get("fill") == "#aaaaaa"]
     assert areas[0] == "M36 46.8L108 46.8L108 39.6L36 39.6z"
     assert len([path for path in root.iter() if path.get("fill") == "#123456"]) == len(MARKER_CORNERS) + 1
+    assert 'y="12.78">band<' in figure.write()  # 2 % of the height and 0.6 of the size 7.5 pt above the panel
     assert not re.search(r"nan|inf", figure.write())
 
 
