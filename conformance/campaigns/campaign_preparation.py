@@ -162,7 +162,8 @@ def _build_design(file: CampaignFile, folder: Path, case_ids: tuple[str, ...]) -
             raise InputError(where, f"{link.follows!r} is not a varied input", suggest_names(link.follows, keys))
         first = [axis.row(0)[link.follows] for axis in axes if link.follows in axis.keys]
         if any(not isinstance(value, int | float) for value in first):
-            raise InputError(f"campaign, key link[{i}].follows", "the input is not a number", "Vary the linked input.")
+            found = f"the input {link.follows!r} is not a number"
+            raise InputError(f"campaign, key link[{i}].follows", found, f"Vary {link.key} itself, without a link.")
     keys += [link.key for link in file.link]
     repeated = [key for key, count in Counter(keys).items() if count > 1]
     if repeated:

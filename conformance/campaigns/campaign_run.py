@@ -189,7 +189,7 @@ def _build_row(run: PlannedRun, result: CaseResult, missing: Sequence[str], wall
 
 
 def _find_balance_forces(case: Case, result: CaseResult) -> tuple[float, ...]:
-    """Uplift forces of a tuned run, corrected by what is left of the tolerance of its tuning."""
+    """Uplift forces of a tuned run, corrected by the remaining deviation from its target mean force."""
     forces = find_uplift_forces(result.derived)
     means = [result.quantities.get(str(number), {}).get("mean_force_N") for number in range(1, len(forces) + 1)]
     if not forces or not all(isinstance(mean, float) for mean in means):

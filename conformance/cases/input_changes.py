@@ -91,7 +91,7 @@ def parse_changes(texts: Sequence[str]) -> tuple[InputChange, ...]:
         The changes in their order.
 
     Raises:
-        InputError: A text is no assignment, a key does not exist, or its value cannot be changed.
+        InputError: A text is not an assignment, a key does not exist, or its value cannot be changed.
     """
     return tuple(map(_parse_change, texts))
 
@@ -177,7 +177,7 @@ def parse_value(text: str, where: str) -> object:
     """Parse a value of TOML; a plain word is text, because a shell removes quotes.
 
     Raises:
-        InputError: The text is no value; `where` is its place in the message.
+        InputError: The text is not a value; `where` is its place in the message.
     """
     try:
         return tomllib.loads(f"value = {text}")["value"]

@@ -46,7 +46,7 @@ class ErrorBound(InputTable):
 
 
 class InputBounds(InputTable):
-    """Errors of one input that pass, upwards and downwards."""
+    """Largest errors of one input that pass: an input that is too large (up) or too small (down)."""
 
     name: StudyText
     group: StudiedPart
@@ -55,13 +55,13 @@ class InputBounds(InputTable):
     not_applicable: str | None = None
     """Reason why the case does not support an error of this input."""
     up: ErrorBound | None = None
-    """Larger values, by both verdicts."""
+    """Bound of an input that is too large, under both verdicts."""
     down: ErrorBound | None = None
-    """Smaller values, by both verdicts."""
+    """Bound of an input that is too small, under both verdicts."""
     up_criteria: ErrorBound | None = None
-    """Larger values, by the EN 50318 criteria alone; none: no limit counts."""
+    """Bound of an input that is too large, under the EN 50318 criteria alone; none: no limit counts."""
     down_criteria: ErrorBound | None = None
-    """Smaller values, by the EN 50318 criteria alone; none: no limit counts."""
+    """Bound of an input that is too small, under the EN 50318 criteria alone; none: no limit counts."""
 
 
 class ResolvingPowerFile(InputStudyFile):

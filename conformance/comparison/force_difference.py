@@ -280,7 +280,7 @@ def compare_likeness(first: AssessedRecord, second: AssessedRecord) -> ForceLike
 
 
 def measure_likeness(number: int, signals: PantographSignals, other: PantographSignals) -> ForceLikeness | None:
-    """Likeness of the forces of one pantograph; None if they are not known up to 50 Hz, or over no common stretch.
+    """Likeness of two forces of one pantograph; None below a rate for 50 Hz, or without a common stretch.
 
     The middle of one force is searched in the other, so that a shifted copy is compared over its whole length.
 

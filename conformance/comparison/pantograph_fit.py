@@ -31,8 +31,7 @@ HIGH_CORRELATION = 0.95
 """Correlation of two parameters that is reported: each interval is three times wider than with the other fixed."""
 
 EXCESS = 1.5
-"""Ratio of variances above which the deviations are no noise: 240 residuals of noise alone exceed 1.2 once in a hundred
-fits."""
+"""Ratio of variances above which the deviations are not noise: 240 residuals of noise exceed 1.2 once in 100 fits."""
 
 FILE_DIGITS = 6
 """Significant digits of a fitted value in the file: more than any response determines."""

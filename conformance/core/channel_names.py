@@ -16,7 +16,7 @@ _SENSOR = re.compile(r"s\d+_[xyz]")
 
 
 VOICED_MARKS = "\u3099\u309a"
-"""Marks that distinguish Japanese syllables; they are no accents."""
+"""Marks that distinguish Japanese syllables; they are not accents."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def fold_name(text: str) -> str:
 
 
 def find_factor(text: str, known: Mapping[str, float]) -> float | None:
-    """Factor of a unit to the SI unit; None if it is no unit of this quantity. `known` as from `find_key_units`."""
+    """Factor of a unit to the SI unit; None if it is not a unit of this quantity. `known` as from `find_key_units`."""
     name = text.strip()
     return known.get(key_suffix(SPELLINGS.get(name.lower(), name)))
 

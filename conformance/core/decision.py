@@ -46,7 +46,7 @@ def parse_decision(text: str, where: str = "option --decision") -> DecisionRule:
     """Decision rule of its text: `simple`, `guarded`, or `shared-risk:` and the largest accepted risk.
 
     Raises:
-        InputError: The text is no rule, or the risk is not between 0 and 0.5.
+        InputError: The text is not a rule, or the risk is not between 0 and 0.5.
     """
     if re.fullmatch(DECISION_PATTERN, text):
         name, _, risk = text.partition(":")

@@ -105,7 +105,7 @@ def _list_channels(file: Any, largest: int, where: str) -> tuple[str, ...]:
 
 
 def _check_sizes(file: Any, groups: set[int], largest: int, where: str) -> None:
-    """Refuse groups whose records hold more bytes than the accepted numbers; the library allocates what they state."""
+    """Refuse groups whose records hold more bytes than the accepted numbers: the reading library allocates all."""
     for number in groups:
         group = file.groups[number].channel_group
         record = int(group.samples_byte_nr) + int(group.invalidation_bytes_nr)

@@ -144,7 +144,7 @@ def parse_direction(text: str, where: str) -> tuple[Axis, float]:
     """Axis and sign of a direction such as `+z` or `-x`; `where` is the place of the text in messages.
 
     Raises:
-        InputError: The text is none of +x, -x, +y, -y, +z, -z.
+        InputError: The text is not one of +x, -x, +y, -y, +z, -z.
     """
     name = text.strip().lower()
     for axis in get_args(Axis):

@@ -17,7 +17,7 @@ QUANTILE_95 = 1.959964
 """Half-width of a 95 % interval in standard deviations."""
 
 BOUNDED_COMPONENTS: tuple[ComponentName, ...] = ("sampling", "resolution", "alignment")
-"""Components that bound what a record with fewer samples or digits, or with several clocks, hides."""
+"""Components that bound the error of a record with fewer samples or digits, or with several clocks."""
 
 LimitPair = tuple[float | None, float | None]
 """Lower and upper limit; None: none on this side."""

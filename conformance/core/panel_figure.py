@@ -1,7 +1,7 @@
 """Figures of panels as SVG, written directly: importing and using a plotting package takes a second per certificate.
 
-A panel draws what it is told at data coordinates, between ticks at round numbers. Its methods and arguments bear the
-names of matplotlib, which draws the figures of the other reports in the same style.
+A panel draws lines, areas and texts at data coordinates, between ticks at round numbers. Its methods and arguments
+bear the names of matplotlib, which draws the figures of the other reports in the same style.
 """
 
 from collections.abc import Callable, Sequence

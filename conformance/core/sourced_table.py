@@ -83,7 +83,7 @@ def _find_problems(table: BaseModel, complete: bool) -> list[PydanticCustomError
 
 
 def _build_valid_part(model: type[T], data: Any, details: list[ErrorDetails]) -> T | None:
-    """Table with the valid keys only; access to another key is an AttributeError. None if the data are no table."""
+    """Table with the valid keys only; access to another key is an AttributeError. None if the data are not a table."""
     if not isinstance(data, dict):
         return None
     faults = _group_by_key(details)

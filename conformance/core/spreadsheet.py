@@ -63,8 +63,8 @@ def read_spreadsheet(path: Path, sheet: str | None = None) -> Spreadsheet:
         sheet: Name of the sheet in a workbook with several sheets.
 
     Raises:
-        InputError: The file cannot be read, is no text, has no row or too many, or has rows of another width than its
-            head line; a cell of a sheet has no certain content.
+        InputError: The file cannot be read, is not a text, has no row or too many, or has rows of another width than
+            its head line; a cell of a sheet has no certain content.
     """
     where = f"table '{path.name}'"
     if path.suffix.lower() in WORKBOOK_SUFFIXES:

@@ -150,7 +150,7 @@ class TextReading:
 
     @cached_property
     def above(self) -> list[SplitLine]:
-        """Lines above the numbers that are no comments; below the stated head lines also comments."""
+        """Lines above the numbers that are not comments; below the stated head lines also comments."""
         lines = self.lines[: self.first]
         if self.header_lines is not None:
             stated = [(number, text.lstrip().lstrip("#")) for number, text, _ in lines if number > self.header_lines]
@@ -264,7 +264,7 @@ def find_text_layout(lines: list[NumberedLine], where: str, settings: TextSettin
         The only layout in which the lines are a table.
 
     Raises:
-        InputError: The lines are no table, or several layouts are valid; the error names the key that decides.
+        InputError: The lines are not a table, or several layouts are valid; the error names the key that decides.
     """
     separators = _list_separators(lines) if settings.separator is None else (settings.separator,)
     readings = [

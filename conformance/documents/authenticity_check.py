@@ -13,8 +13,8 @@ from pantocheck.conformance.pages.words import clean_text
 CheckOutcome = Literal["proved", "contradicted", "incomplete", "open"]
 """Outcome of a check; `open` if it was not requested or needs more than the document.
 
-`incomplete`: another version wrote the document, so that a part of it could not be compared. This is no contradiction,
-but such a document is never accepted: otherwise a changed version number would hide changed pages.
+`incomplete`: another version wrote the document, so that a part of it could not be compared. This is not a
+contradiction, but such a document is never accepted: otherwise a changed version number would hide changed pages.
 """
 
 

@@ -183,7 +183,7 @@ def read_certificate(path: Path) -> Certificate:
     """Read a certificate or a results.json.
 
     Raises:
-        InputError: It cannot be read, is too large, or is none of them.
+        InputError: It cannot be read, is too large, or is not one of them.
     """
     name = str(path)
     if path.is_dir():

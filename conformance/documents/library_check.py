@@ -151,7 +151,7 @@ def _list_foreign_notes(result: CaseResult) -> Iterator[str]:
     if result.charts or result.tables:
         return  # a study states notes of its own
     known = {*case.notes, record.start_text, *(row.text for row in record.checks), *note_case_version(None)}
-    yield from (f"the note '{_name(note)}' is none of the library" for note in result.notes if note not in known)
+    yield from (f"the note '{_name(note)}' is not in the library" for note in result.notes if note not in known)
 
 
 def _compare_warnings(case: Case, result: CaseResult) -> Iterator[str]:
@@ -305,13 +305,13 @@ def list_own_limits(case: Case, result: CaseResult) -> list[str]:
 
 
 def list_claimed_limits(result: CaseResult) -> Iterator[str]:
-    """Limits of a case that are none of the library, but claim another trust than that of a user."""
+    """Limits of a case that are not in the library, but claim another trust than that of a user."""
     limits = {limit.target: limit for limit in list_library_limits(result.id)}
     rows = _by_target(row for row in result.criteria if not row.is_drift and result.profile is None)
     for target, row in rows.items():
         is_library = target in limits and not list(_compare_limit(limits[target], row))
         if row.trust != "own" and not is_library:
-            yield f"{criterion_name(row)}: trust '{row.trust}' of a limit that is none of the library; expected 'own'"
+            yield f"{criterion_name(row)}: trust '{row.trust}' of a limit that is not in the library; expected 'own'"
 
 
 def compare_verification_limits(case: Case, result: CaseResult) -> Iterator[str]:

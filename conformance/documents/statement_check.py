@@ -34,7 +34,7 @@ def check_date(started: str | None, subject: str = "the run started at") -> Iter
     try:
         start = datetime.strptime(started, TIME_FORMAT).replace(tzinfo=UTC)
     except ValueError:
-        yield f"the start of the run '{started}' is no time such as {now:{TIME_FORMAT}}"
+        yield f"the start of the run '{started}' is not a time such as {now:{TIME_FORMAT}}"
         return
     if start > now + FAST_CLOCK:
         yield f"{subject} {started}, in the future: the clock of this machine shows {now:{TIME_FORMAT}}"

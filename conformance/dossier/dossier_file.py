@@ -138,7 +138,7 @@ class LineTestTable(InputTable):
             if not rule.compares:
                 yield validation_problem(
                     f"tolerance[{i}]",
-                    f"the bounds of {rule.quantity} are no tolerance on the measured value",
+                    f"the bounds of {rule.quantity} are not a tolerance on the measured value",
                     "Give tolerance or tolerance_pct.",
                 )
 

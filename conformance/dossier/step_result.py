@@ -131,7 +131,7 @@ def describe_conditions(name: str, case: Case, dossier: Dossier) -> Evidence | N
 
 
 def list_inputs(dossier: Dossier, line: LineFile, pantographs: Sequence[PantographFile]) -> dict[str, float]:
-    """Inputs whose change the dossier claims, by key as for `--set`; an input that is no number is left out."""
+    """Inputs whose change the dossier claims, by key as for `--set`; an input that is not a number is left out."""
     found = {claim.key: _find_input(claim.key, line, pantographs) for claim in dossier.file.validity.change}
     return {key: value for key, value in found.items() if value is not None}
 

@@ -2,8 +2,8 @@
 
 The unknowns are the factors x of the free properties and the coefficients c of the damping of the wires. The data are
 frequencies, damping ratios and shapes; a normal prior holds each factor near 1. Properties that are not free keep
-their stated value. Their tolerance acts through the sensitivity of each mode: a mode that depends strongly on what is
-not known has a small weight (consider parameters, [1]). Each Gauss-Newton step computes the line anew.
+their stated value. Their tolerance acts through the sensitivity of each mode: a mode that depends strongly on
+them has a small weight (consider parameters, [1]). Each Gauss-Newton step computes the line anew.
 
 The scatter of the line model is found from the residuals: that of the damping from the differences within the groups of
 span modes, so that a group which the wires do not explain remains visible.

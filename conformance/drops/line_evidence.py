@@ -1,4 +1,4 @@
-"""Evidence of a joint fit: what the modes determine, a line that they refute, and groups that they leave open."""
+"""Evidence of a joint fit: properties that the modes determine, lines that they refute, groups that they leave open."""
 
 from collections.abc import Iterator, Sequence
 

@@ -193,7 +193,7 @@ def skip_unlimited(
         source: Document that demands the quantity.
         owner: Number of the pantograph; 0: the line.
         item: Number among several values.
-        unit: Unit of a value that is no quantity of a run.
+        unit: Unit of a value that is not a quantity of a run.
         value: Value without a limit.
         trust: Trust of the demand; None: a baseline.
         lowest_trust: Lowest trust of the demands that count.

@@ -110,7 +110,7 @@ def find_uplift_forces(facts: Sequence[DerivedFact]) -> tuple[float, ...]:
 
 # Values of the inputs of a case in results.json: every key of a table, lists of tables column by column.
 NAME_KEYS = frozenset({"id", "title", "line", "model", "requires", "edition", "superseded_by", "on_request"})
-"""Keys that name a case or its files, and are no inputs."""
+"""Keys that name a case or its files, and are not inputs."""
 
 OTHER_PARTS = frozenset({"limit", "reading", "pantograph", "mass_drop", "study", "damping"})
 """Keys of a case file with groups of their own."""

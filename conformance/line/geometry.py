@@ -217,7 +217,7 @@ class ListedSpans(SpanPositions, SourcedTable):
             if number in (0, self.spans) and support.changes:
                 yield validation_problem(
                     f"{key}.{next(iter(support.changes))}",
-                    f"{number} is an end of the line, where the wires are anchored",
+                    f"support {number} is an end of the line, with anchored wires",
                     "Leave it out: an end has a stagger, an encumbrance and a contact wire height only.",
                 )
 

@@ -72,7 +72,7 @@ def _build_sheet(name: str, columns: list[SheetColumn], rows: list[dict[str, Cel
 
 
 class _PlaceColumns(SupportPlace):
-    """Columns of both tables that are no keys of the line file."""
+    """Columns of both tables that are not keys of the line file."""
 
     name: str | None = None
     """Name of the support, for the reader."""

@@ -13,7 +13,7 @@ TILE_M, LARGEST_OFFSET_M = 1000.0, 2000.0
 """Stretch that is compared, and largest offset that is searched [m]."""
 
 PLACED_WITHIN_M = 10.0
-"""Largest offset that is no finding [m]."""
+"""Largest offset that is not a finding [m]."""
 
 SAME_OFFSET_M = 5.0
 """Largest difference of the offsets of neighbouring stretches that are one finding [m]."""

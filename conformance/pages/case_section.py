@@ -223,7 +223,7 @@ SHOWN_DIGITS = 5
 
 
 def derived_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
-    """Table of derived values that are no quantities of the line, and by whom they were computed."""
+    """Table of derived values that are not quantities of the line, and by whom they were computed."""
     quantities = case.quantities.get("0", {}).values()
     if not (derived := [fact for fact in case.derived if fact.value not in quantities]):
         return ()

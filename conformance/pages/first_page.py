@@ -79,7 +79,7 @@ class FirstPage:
 
 
 def plan_first_page(results: Results) -> FirstPage:
-    """Cases in their order as far as there is room, and what all cases have in common."""
+    """Cases in their order as far as there is room, and the source that all limits have in common."""
     room, graded = MOST_GRADED, []
     for case in results.cases if results.procedure is None else ():
         rows = len(list_criteria(case, "criteria"))

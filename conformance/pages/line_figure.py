@@ -244,7 +244,7 @@ def draw_line_sketch(case: CaseResult) -> tuple[doc.Figure, ...]:
 
 
 def name_pantographs(case: CaseResult) -> str:
-    """Number, masses and distances of the pantographs of a case; the number alone of those that are no chains."""
+    """Number, masses and distances of the pantographs of a case; masses of chains only."""
     texts = []
     for chain, names in _read_chains(case).items():
         texts.append(f"{len(names)} × masses {', '.join(map(format_plain, chain.masses))} kg")
@@ -316,7 +316,7 @@ def _read_chain(values: StoredValues, contact: StoredValues, head: StoredValues)
 
 
 def _list_numbers(value: StoredValue | None) -> tuple[float, ...]:
-    """Numbers of a stored value; a single number is a list of one; nothing for other values."""
+    """Numbers of a stored value, which is a number or a list; none for a text."""
     listed = value if isinstance(value, list) else [value]
     numbers = tuple(number for number in listed if isinstance(number, float))
     return numbers if len(numbers) == len(listed) else ()

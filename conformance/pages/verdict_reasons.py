@@ -187,7 +187,7 @@ def state_decision(results: Results) -> str:
 
 
 def describe_rule(results: Results) -> str:
-    """Name of the decision rule, and what it means behind a colon."""
+    """Name of the decision rule, with its meaning behind a colon."""
     return describe_decision(parse_decision(results.decision, "results, key decision"))
 
 

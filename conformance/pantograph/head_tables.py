@@ -183,8 +183,9 @@ class HeadTable(SourcedTable):
             for i, part in enumerate(getattr(self, key)):
                 right = part.direction is None if chain else len(part.direction or ()) == unknowns
                 if not right or (part.between is None) == chain:
-                    hint = "Give between." if chain else f"Give direction with {unknowns} values."
-                    yield validation_problem(f"{key}[{i}]", "does not state its parts", hint)
+                    wanted, other = ("between", "direction") if chain else ("direction", "between")
+                    hint = f"Give {wanted}." if chain else f"Give {wanted} with {unknowns} values."
+                    yield validation_problem(f"{key}[{i}]", f"needs {wanted}, and no {other}", hint)
 
     def extend(self, pantograph: Pantograph, find_part: FindPart, datum: RealArray) -> Pantograph:
         """Pantograph with the structure of this table.

@@ -23,7 +23,7 @@ ComplexList = Annotated[
 """Complex numbers as pairs of real and imaginary part."""
 
 ACTIVE = 1e-9
-"""Share of the receptance above which a positive imaginary part is no rounding."""
+"""Share of the receptance above which a positive imaginary part is not a rounding error."""
 
 GRID = 400
 """Number of frequencies at which receptances are compared."""

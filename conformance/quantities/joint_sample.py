@@ -1,4 +1,4 @@
-"""Joint sample of the quantities of a case: what they could have been, with the correlation between them.
+"""Joint sample of the quantities of a case: their possible values, with the correlation between them.
 
 A draw takes one of the runs and sections that were evaluated. It adds a deviation by the length of the record, one by
 mesh and time step, one by sampling rate and resolution, and one by each direction of the tolerances of the line. All

@@ -53,7 +53,7 @@ class Uncertainty:
 
     @property
     def unknown_components(self) -> tuple[ComponentName, ...]:
-        """Components that are not known; one that does not apply is none of them."""
+        """Components that are not known, without those that do not apply."""
         return tuple(name for name, part in self.components.items() if part.basis.startswith(UNKNOWN_BASIS))
 
     def list_unknown(self, owner: int, quantity: str) -> tuple[ComponentName, ...]:

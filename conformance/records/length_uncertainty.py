@@ -97,7 +97,7 @@ class ExtremeInterval(SpanInterval):
 
 @dataclass(frozen=True)
 class SubRecordRange:
-    """Range of what was run: the values of all stretches of half the record. No share of true values is stated."""
+    """Range of the values of all stretches of half the record. No share of true values is stated."""
 
     half_width: float
     """Largest distance from the value of the record."""

@@ -25,7 +25,7 @@ STRIP_CHANNELS = ("front_strip", "rear_strip")
 """Channels of the two strips of a pantograph."""
 
 OUTPUT_COLUMN = "fmu "
-"""Prefix of the column of an output of an FMU, which is no channel; its name is `fmu 1: NAME`."""
+"""Prefix of the column of an output of an FMU, which is not a channel; its name is `fmu 1: NAME`."""
 
 FORCE_CHANNELS = ("force", *STRIP_CHANNELS)
 """Contact forces, of which the first is the sum of the others if there are strips."""

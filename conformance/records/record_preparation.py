@@ -70,7 +70,7 @@ class PreparedRecord(SectionEvaluations):
     excluded: tuple[tuple[float, float], ...] = ()
     """Stretches that are left out of the statistics of the pantographs [m, m]."""
     alignments: tuple[Alignment, ...] = ()
-    """Sources with their own times."""
+    """Clocks of the sources that have times of their own."""
     shifted_lines: tuple[LineSignals, ...] = ()
     """Uplift with all clocks of sources at either end of their intervals."""
     place_clocks: tuple[tuple[str, str, Clock], ...] = ()

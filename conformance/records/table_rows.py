@@ -77,7 +77,7 @@ def read_rows(
         table: Table of the file.
         file: Its description.
         sidecar: Sidecar with the numbers of pantographs and supports.
-        further: Columns that are no channels.
+        further: Columns that are not channels.
         where: Place of the description in messages.
 
     Raises:

@@ -24,7 +24,7 @@ LONGEST_EXTRAPOLATION = 1.0
 """Longest extrapolation beyond the first and last pulse, in intervals of two pulses; the next pulse would be known."""
 
 RISING, FALLING = 0.6, 0.4
-"""Levels of a rising and a falling edge as shares of the range of a pulse train; noise between them is no pulse."""
+"""Levels of a rising and a falling edge as shares of the range of a pulse train; noise between them is not a pulse."""
 
 
 class PulsesUnusable(ValueError):

@@ -189,7 +189,7 @@ class Session:
         if found is None:
             raise RuntimeError(f"the FMU has no {interface}")
         if not IDENTIFIER.fullmatch(found.modelIdentifier or ""):
-            raise RuntimeError(f"the model identifier {found.modelIdentifier!r} is no identifier")
+            raise RuntimeError(f"the model identifier {found.modelIdentifier!r} is not a valid name")
         self.major = int(described.fmiVersion[0])
         return {
             "fmi_version": described.fmiVersion,

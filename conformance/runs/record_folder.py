@@ -160,7 +160,7 @@ gives the same error at a distance of 100 m."""
 
 
 def find_record_mismatch(case: Case, record: Record) -> str | None:
-    """Reason why a record is no run of a case; None if it is one.
+    """Reason why a record is not a run of a case; None if it is one.
 
     Args:
         case: Case with its train.

@@ -195,7 +195,7 @@ class RigControl:
         return next((text for exceeded, text in moving if exceeded), "")
 
     def _receive(self, sample: RigSample | None) -> None:
-        """Take a sample; one that is no message, older than the last one, or of a command to come is refused."""
+        """Take a sample; one that is not a message, is older than the last one, or of a command to come is refused."""
         last = self._last
         if sample is None or sample.number > self.number or (last is not None and sample.time <= last.time):
             self.refused += 1

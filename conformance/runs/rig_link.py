@@ -64,7 +64,7 @@ def pack_command(command: RigCommand) -> bytes:
 
 
 def read_command(message: bytes) -> RigCommand | None:
-    """Command of a message; None if it is no command."""
+    """Command of a message; None if it is not a command."""
     if len(message) != COMMAND.size or not message.startswith(COMMAND_MARK):
         return None
     _, phase, *rest = COMMAND.unpack(message)
@@ -77,7 +77,7 @@ def pack_sample(sample: RigSample) -> bytes:
 
 
 def read_sample(message: bytes) -> RigSample | None:
-    """Sample of a message; None if it is no sample or its numbers are not finite."""
+    """Sample of a message; None if it is not a sample or its numbers are not finite."""
     if len(message) != SAMPLE.size or not message.startswith(SAMPLE_MARK):
         return None
     sample = RigSample(*SAMPLE.unpack(message)[1:])
@@ -120,7 +120,7 @@ class UdpLink:
         self._socket.setblocking(False)
 
     def send(self, command: RigCommand) -> None:
-        """Send a command; what does not leave is lost, as on the way."""
+        """Send a command; one that cannot be sent is lost, like one that is lost on the way."""
         try:
             self._socket.send(pack_command(command))
         except OSError:

@@ -53,7 +53,7 @@ class WireArrays(NamedTuple):
     (U, 6, S'). Equal rows are stored once: U rows differ.
     """
     element_row: Indices
-    """Row of the elements of each row of wires, (B,)."""
+    """Index into `elements` of each row of wires, (B,)."""
     stiffness_coefficient: Array
     """Stiffness-proportional damping of the wires, (B,) [s]."""
     lumped_run: Indices

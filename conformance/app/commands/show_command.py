@@ -25,7 +25,7 @@ from pantocheck.conformance.grading.derived_facts import list_law_forces
 from pantocheck.conformance.quantities.limit_text import name_value
 
 OTHER_TABLES = {"id", "title", "line", "model", "requires", "limit", "reading", "pantograph", "mass_drop", "study"}
-"""Keys of a case file that are no inputs, or that have a table of their own."""
+"""Keys of a case file that are not inputs, or that have a table of their own."""
 
 
 def build_case_tables(case: Case) -> list[RenderableType]:

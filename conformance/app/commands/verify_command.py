@@ -63,7 +63,7 @@ def verify_command(
 
     Exit code 1: another verdict, a contradiction, a document of another version, or one of unknown origin. Anyone can
     invent numbers without a contradiction. --numbers-only accepts them. Exit code 2: the verdict is `error`, or the
-    file is no such document.
+    file is not such a document.
 
     Examples:
 

@@ -302,6 +302,6 @@ def open_modes(path: str | Path) -> IdentifiedLines:
         path: Path of the file.
 
     Raises:
-        InputError: The file cannot be read, or is no list of modes.
+        InputError: The file cannot be read, or is not a list of modes.
     """
     return IdentifiedLines(read_modes(Path(path)))

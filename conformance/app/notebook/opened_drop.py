@@ -66,7 +66,7 @@ class OpenedDrop:
             path: Path of the record; its suffix chooses the format.
 
         Raises:
-            InputError: The suffix is none of these, or the file cannot be written.
+            InputError: The suffix is not one of these, or the file cannot be written.
         """
         file = Path(path)
         select_drop_writer(file)(self.record, file)

@@ -88,7 +88,7 @@ def verify_report(
         cases: Folders with further cases, whose ids begin with `own/`.
 
     Raises:
-        InputError: A file cannot be read, is damaged, or is no report.
+        InputError: A file cannot be read, is damaged, or is not a report.
     """
     path, roots = Path(report), None if trust_roots is None else Path(trust_roots)
     verification = verify_document(path)

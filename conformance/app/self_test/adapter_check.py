@@ -134,7 +134,7 @@ def check_two_pantographs(system: System) -> AdapterFinding:
 
 
 def _describe_no_delivery(subject: str, outcome: Skipped | Errored, consequence: str, remedy: str) -> AdapterFinding:
-    """Finding on an answer without a delivery; a refusal is no fault of an adapter."""
+    """Finding on an answer without a delivery; a refusal is not a fault of the adapter."""
     if isinstance(outcome, Skipped):
         return AdapterFinding("note", subject, f"refused: {outcome.reason}. {consequence}")
     return AdapterFinding("wrong", subject, f"error: {outcome.reason}. {remedy}.")
@@ -239,7 +239,7 @@ def _check_statements(case: Case, delivered: Delivered, record: RecordFacts) -> 
     elif record.start == "differs":
         yield AdapterFinding("note", "start", record.start_text or "differs from that of the case.")
     else:
-        yield AdapterFinding("ok", "start", "stated, as in the case.")
+        yield AdapterFinding("ok", "start", "the sidecar states the start of the case.")
     unknown = [key for key in ("dt_s", "element_m") if getattr(delivered.run, key) is None]
     if unknown:
         yield AdapterFinding("note", "run", f"the sidecar has no {' and '.join(unknown)} in [run]; reports print them.")

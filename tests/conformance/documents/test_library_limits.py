@@ -109,7 +109,7 @@ def test_limit_of_a_user_with_another_trust_is_found(case_250: Case, result: Cas
     claimed = list(list_claimed_limits(stated.model_copy(update={"criteria": rows})))
     assert len(claimed) == (len(rows) if library == "own" else 1)
     assert claimed[0].startswith(
-        "mean_force_N of pantograph 1: trust 'secondary' of a limit that is none of the library"
+        "mean_force_N of pantograph 1: trust 'secondary' of a limit that is not in the library"
     )
     own = [row.model_copy(update={"trust": "own"}) for row in rows]
     assert list(list_claimed_limits(stated.model_copy(update={"criteria": own}))) == []

@@ -28,9 +28,9 @@ def failing(tree: Tree) -> Tree:
 
 CHANGES: dict[str, tuple[Callable[[Tree], object], str]] = {
     "case twice": (lambda t: t["cases"].append(case_of(t)), "the case en50318-2002/250 occurs 2 times"),
-    "note": (lambda t: case_of(t)["notes"].append(NOTE), "is none of the library"),
+    "note": (lambda t: case_of(t)["notes"].append(NOTE), "is not in the library"),
     "future": (lambda t: t.update(started="2999-01-01T00:00:00Z"), "in the future: the clock of this machine shows"),
-    "date": (lambda t: t.update(started="yesterday"), "'yesterday' is no time such as"),
+    "date": (lambda t: t.update(started="yesterday"), "'yesterday' is not a time such as"),
     "reason of a case": (lambda t: case_of(t).update(reason="passed"), "does not follow from the checks of the record"),
     "demand": (lambda t: case_of(t)["record"].update(demanded=False), "which only a profile can state"),
     "reason": (lambda t: failing(t).update(reason=None), "reason 'None' stated, '"),

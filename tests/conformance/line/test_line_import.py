@@ -123,7 +123,7 @@ def test_every_problem_of_all_files_is_named_with_row_and_column(tables: tuple[P
         f"{d} 28, column 'x_m'": "58.5 m is not inside the span of 58.5 m",
         f"{s} 4, column 'encumbrance_m'": "-1 must be greater than 0.0",
         f"{s} 5, column 'steady_arm_acts'": "found 'pulls', expected 'pull' or 'push'",
-        f"{s} 8, column 'messenger_support_stiffness_N_m'": "6 is an end of the line, where the wires are anchored",
+        f"{s} 8, column 'messenger_support_stiffness_N_m'": "support 6 is an end of the line, with anchored wires",
     }
 
 
