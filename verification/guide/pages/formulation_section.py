@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.core.figure_data import Chart, Series
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import format_plain, format_value, quantity_label, quantity_unit
@@ -90,32 +90,19 @@ def _name_quantity(row: dict[str, Any]) -> str:
 def _draw_differences(cases: list[dict[str, Any]]) -> doc.Figure:
     passages = [case for case in cases if any(row["quantity"] in DRAWN_QUANTITIES for row in case["converged"])]
     names = [case["case"].removeprefix("en50318-") for case in passages]
-    series: list[dict[str, Any]] = [
-        {
-            "label": quantity_label(quantity),
-            "style": "bars",
-            "x": list(range(len(passages))),
-            "y": [_largest_difference(case, quantity) for case in passages],
-            "error": None,
-            "high": None,
-        }
+    series = [
+        Series(
+            label=quantity_label(quantity),
+            style="bars",
+            x=list(range(len(passages))),
+            y=[_largest_difference(case, quantity) for case in passages],
+        )
         for quantity in DRAWN_QUANTITIES
     ]
-    chart = {
-        "x_label": "",
-        "y_label": "difference [%]",
-        "x_scale": "linear",
-        "y_scale": "linear",
-        "ticks": names,
-        "series": series,
-        "marks": [],
-        "wide": True,
-    }
-    largest = "; ".join(
-        f"{name}: {format_value(max(one['y'][k] for one in series), 2)} %" for k, name in enumerate(names)
-    )
+    chart = Chart(caption="", alternative="", x_label="", y_label="difference [%]", ticks=names, series=series)
+    largest = "; ".join(f"{name}: {format_value(max(s.y[k] for s in series), 2)} %" for k, name in enumerate(names))
     return doc.Figure(
-        draw_chart(Chart.model_validate({"caption": "", "alternative": ""} | chart)),
+        draw_chart(chart),
         f"Largest difference of each case over the pantographs and bands: {largest}.",
         "Largest difference of this version from the second formulation, of the pantographs of each case.",
     )

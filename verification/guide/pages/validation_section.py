@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.core.figure_data import Chart, Series
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import format_beside_limits, format_value, quantity_label, quantity_unit
@@ -127,40 +127,26 @@ def _draw_scatter(unit: str, families: dict[str, list[dict[str, Any]]]) -> doc.F
     ends = [row[key] for row in rows for key in ("value", "lower", "upper")]
     low, high = min(ends), max(ends)
     margin = 0.05 * (high - low)
-    series = [
-        {
-            "label": family,
-            "style": "points",
-            "x": [row["value"] for row in points],
-            "y": [(row["lower"] + row["upper"]) / 2 for row in points],
-            "error": [(row["upper"] - row["lower"]) / 2 for row in points],
-            "high": None,
-        }
+    series = [Series(label="equal values", style="line", x=[low, high], y=[low, high])]
+    series += [
+        Series(
+            label=family,
+            style="points",
+            x=[row["value"] for row in points],
+            y=[(row["lower"] + row["upper"]) / 2 for row in points],
+            error=[(row["upper"] - row["lower"]) / 2 for row in points],
+        )
         for family, points in families.items()
     ]
     outside = [row for row in rows if row["verdict"] == "fail"]
-    missed = {
-        "label": "outside its range",
-        "style": "crosses",
-        "x": [row["value"] for row in outside],
-        "y": [(row["lower"] + row["upper"]) / 2 for row in outside],
-        "error": None,
-        "high": None,
-    }
-    equal = {"label": "equal values", "style": "line", "x": [low, high], "y": [low, high], "error": None, "high": None}
-    chart = {
-        "x_label": f"computed [{unit}]",
-        "y_label": f"published [{unit}]",
-        "x_scale": "linear",
-        "y_scale": "linear",
-        "ticks": None,
-        "series": [equal, *series, *([missed] if outside else [])],
-        "marks": [],
-        "wide": True,
-    }
+    if outside:
+        x, y = [row["value"] for row in outside], [(row["lower"] + row["upper"]) / 2 for row in outside]
+        series.append(Series(label="outside its range", style="crosses", x=x, y=y))
+    labels = {"x_label": f"computed [{unit}]", "y_label": f"published [{unit}]"}
+    chart = Chart(caption="", alternative="", **labels, series=series)
     inside = sum(row["verdict"] in INSIDE for row in rows)
     return doc.Figure(
-        draw_chart(Chart.model_validate({"caption": "", "alternative": ""} | chart), (low - margin, high + margin)),
+        draw_chart(chart, (low - margin, high + margin)),
         f"{inside} of {len(rows)} published ranges in {unit} contain the computed value, from {format_value(low, 3)} "
         f"to {format_value(high, 3)} {unit}.{_list_outside(outside)}",
         f"Published against computed values [{unit}].{_list_outside(outside)}",
