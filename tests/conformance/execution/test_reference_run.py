@@ -70,12 +70,17 @@ def test_values_of_the_reference_are_added_and_nothing_else_changes(both: tuple[
 def test_force_of_another_section_is_not_drawn(
     both: tuple[Results, Results], case: Case, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A section that only begins later has a force; one that ends before, or begins after, has none."""
+    """A section that only begins later has a force; one that ends before, or begins after, or is empty, has none."""
     [result] = both[0].cases
     trace = result.traces["1"]
     length = trace.position_m[-1] - trace.position_m[0]
-    for shift, owners in ((length / 2, {"1"}), (length, set()), (-length, set())):
-        moved = trace.model_copy(update={"position_m": [x + shift for x in trace.position_m]})
+    for shift, count, owners in (
+        (length / 2, None, {"1"}),
+        (length, None, set()),
+        (-length, None, set()),
+        (0, 0, set()),
+    ):
+        moved = trace.model_copy(update={"position_m": [x + shift for x in trace.position_m[:count]]})
         reference = both[0].model_copy(update={"cases": [result.model_copy(update={"traces": {"1": moved}})]})
         monkeypatch.setattr(runner, "run_cases", lambda *_, reference=reference: reference)
         [found] = add_reference(both[0], [case], jobs=1).cases
