@@ -63,6 +63,9 @@ def test_sample_is_seeded_and_leaves_kernels_and_listed_mutants_out(toy: Path) -
     known = {"file": "model/grading/grade.py", "line": "return value < LIMIT", "mutant": "return value <= LIMIT"}
     assert len(draw_sample(toy, folders["model/grading"], 4, [known])) == 3
     assert len(draw_sample(toy, folders["model/grading"], 4, [{**known, "mutant": "return True"}])) == 4
+    (toy / "model/use.py").write_text("def use(value):\n    if found := value:\n        return found\n", "utf-8")
+    assert draw_sample(toy, folders["model"], 4, []) == []  # `if not found := value` is no Python
+    (toy / "model/use.py").write_text(FILES["model/use.py"], "utf-8")
     assert draw_sample(toy, folders["model"], 4, []) == []  # no `frozen`, which the type checker finds, no kernels
 
 

@@ -90,15 +90,19 @@ def list_mutants(root: Path, file: str) -> Iterator[Mutant]:
 
 
 def draw_sample(root: Path, files: list[str], size: int, known: list[dict[str, str]]) -> list[Mutant]:
-    """First mutants of a folder in the order of their digests, without those that are listed as equivalent."""
+    """First mutants of a folder in the order of their digests, but those listed as equivalent and those no Python."""
 
-    def is_equivalent(mutant: Mutant) -> bool:
+    def counts(mutant: Mutant) -> bool:
+        try:
+            ast.parse(mutant.mutate((root / mutant.file).read_text("utf-8")))
+        except SyntaxError:  # such as `not` before an assignment expression
+            return False
         listed = [[f"-{item['line']}", f"+{item['mutant']}"] for item in known if item["file"] == mutant.file]
         changes = list_changes(root, mutant)[1:] if listed else []
-        return [line[0] + line[1:].strip() for line in changes] in listed
+        return [line[0] + line[1:].strip() for line in changes] not in listed
 
     mutants = sorted((m for file in files for m in list_mutants(root, file)), key=lambda mutant: mutant.order)
-    return list(islice((mutant for mutant in mutants if not is_equivalent(mutant)), size))
+    return list(islice(filter(counts, mutants), size))
 
 
 def list_changes(root: Path, mutant: Mutant) -> list[str]:
