@@ -3,8 +3,6 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
 from pantocheck.conformance.comparison.static_record import STATIC_SCHEMA, StaticSidecar, read_static_table
 from pantocheck.conformance.core.measured_table import CSV, TABLE_SUFFIXES
 from pantocheck.conformance.core.texts import count_noun
@@ -20,7 +18,7 @@ from pantocheck.conformance.records.column_values import list_sensor_warnings
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, build_record_error, read_samples
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
-from pantocheck.conformance.records.samples import RecordSamples
+from pantocheck.conformance.records.samples import RecordSamples, analysis_section
 from pantocheck.conformance.records.source_alignment import align_source, extend_train, list_sensor_faults
 from pantocheck.conformance.records.uplift_sensor import refuse_faulty_uplift
 from pantocheck.conformance.records.usable_sections import PlacedSamples, place_samples
@@ -49,9 +47,10 @@ def _describe_uplift(samples: RecordSamples, sidecar: RecordSidecar, table: Path
             text += f"; offset {clock.offset:.3f} s, uncertainty {clock.uncertainty:.3f} s"
             text += f", drift {1e6 * clock.drift:.0f} ppm" if clock.drift else ""
         yield text
-    faults = [fault for part in alignments for fault in list_sensor_faults(part, train)]
-    everywhere = LineSignals((-np.inf, np.inf), placed.samples.support_position, placed.samples.uplift)
-    if (fault := refuse_faulty_uplift(everywhere, placed.position).fault) is not None:
+    section = analysis_section(sidecar, placed.position)
+    faults = [fault for part in alignments for fault in list_sensor_faults(part, train, section)]
+    line = LineSignals(section, placed.samples.support_position, placed.samples.uplift)
+    if (fault := refuse_faulty_uplift(line, placed.position).fault) is not None:
         faults.append(fault)
     yield from (f"warning: `assess` skips the uplift: {fault}" for fault in faults)
 

@@ -17,6 +17,7 @@ from pantocheck.conformance.core.packed_samples import SignalSamples
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.assessed_record import (
+    SECTION_NOT_STATED,
     AssessedRecord,
     find_equal_pantograph,
     find_span_length,
@@ -280,7 +281,9 @@ def describe_other_section(simulated: AssessedRecord, measured: AssessedRecord, 
     """
     own, other = simulated.header.evaluated_m, measured.header.evaluated_m
     if own is None or other is None:
-        return None  # a record with samples then has no quantities, and says so
+        # A record with samples then has no quantities, and says so.
+        summaries = [record.header for record in (simulated, measured) if record.prepared is None]
+        return SECTION_NOT_STATED if any(header.evaluated_m is None for header in summaries) else None
     allowed = LARGEST_SECTION_SHIFT * min(span_m, own[1] - own[0], other[1] - other[0])
     if max(abs(a - b) for a, b in zip(own, other, strict=True)) <= allowed:
         return None

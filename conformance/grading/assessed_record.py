@@ -169,6 +169,10 @@ def evaluate_by_profile(
     return _add_line_quantities(evaluation, line, sidecar.speed_km_h)
 
 
+SECTION_NOT_STATED = "the analysis section is not stated: add evaluated_m to the sidecar"
+"""Reason why a record is not evaluated, or not compared."""
+
+
 def find_missing_statement(samples: RecordSamples, sidecar: RecordSidecar) -> str | None:
     """Find the reason why no quantity of a record is evaluated; None if section and speed are stated.
 
@@ -179,7 +183,7 @@ def find_missing_statement(samples: RecordSamples, sidecar: RecordSidecar) -> st
         sidecar: Sidecar of the record.
     """
     if sidecar.evaluated_m is None:
-        return "the analysis section is not stated: add evaluated_m to the sidecar"
+        return SECTION_NOT_STATED
     if samples.speed is None and (samples.time is None or samples.position is None):
         return "the speed of the train is not recorded: add speed_m_s, or both time_s and position_1_m"
     return None

@@ -107,7 +107,8 @@ class CaseEvaluation:
     @cached_property
     def start_signals(self) -> list[RecordSignals]:
         """Signals of the runs from other starts."""
-        return [self._signals(start.record) for start in self.delivered.starts if start.record is not None]
+        records = [start.record for start in self.delivered.starts if start.record is not None]
+        return [self._signals(record, float(record.position[0, 0])) for record in records]
 
     @property
     def start_evaluations(self) -> list[Evaluation]:
@@ -200,9 +201,10 @@ class CaseEvaluation:
         """Quantities of a further run of the case."""
         return _complete(run, None if run.record is None else self._signals(run.record).evaluation)
 
-    def _signals(self, record: Record) -> RecordSignals:
-        line = self.case.line
-        return RecordSignals(record, self.case.file.filter, line.geometry.supports, line.overlaps)
+    def _signals(self, record: Record, start: float | None = None) -> RecordSignals:
+        """Signals of a run of the case, or of a run from another start of the first pantograph [m]."""
+        line, run = self.case.line, (self.case.start_positions[0] if start is None else start, self.case.end)
+        return RecordSignals(record, self.case.file.filter, line.geometry.supports, line.overlaps, run)
 
 
 def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation:

@@ -44,6 +44,8 @@ class LineSignals:
     """Positions of the last pantograph, (n,) [m], or (s, n) if every support has its own times; None if unknown."""
     fault: str | None = None
     """Reason why no uplift counts; None: it counts."""
+    run_end: float | None = None
+    """Position to which the last pantograph runs [m], so that a shorter record is recognised; None: unknown."""
 
     @property
     def supports(self) -> RealArray:
@@ -117,10 +119,13 @@ class LineSignals:
         ends = np.max(positions, axis=-1, where=np.isfinite(positions), initial=-np.inf)
         pairs = zip(np.broadcast_to(ends, measured.shape), measured, strict=True)
         end, place = max(pairs, key=lambda pair: float(pair[1] - pair[0]))
-        if not end >= place + RUN_OUT_M:
+        needed = place + RUN_OUT_M
+        if self.run_end is not None:
+            needed = max(needed, min(place + UPLIFT_STRETCH_M, self.run_end - SUPPORT_TOLERANCE_M))
+        if not end >= needed:
             raise SupportsMissing(
                 f"the record ends at {end:.6g} m; for the largest uplift of the support at {place:g} m "
-                f"it must extend to {place + RUN_OUT_M:g} m"
+                f"it must extend to {needed:g} m"
             )
 
     @cached_property

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import Evaluation, SectionEvaluations, evaluate_signals
 from pantocheck.conformance.quantities.filters import Filter
-from pantocheck.conformance.quantities.line_signals import LineSignals, has_gaps
+from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M, LineSignals, has_gaps
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
@@ -22,6 +22,7 @@ from pantocheck.conformance.records.record import MAX_SAMPLES, RecordInvalid, ch
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples, analysis_section
 from pantocheck.conformance.records.source_alignment import (
+    GAP_STEPS,
     Alignment,
     align_source,
     extend_train,
@@ -154,7 +155,7 @@ def prepare_record(
     for row in range(samples.force.shape[0]):
         pantographs[row + 1], remarks = _prepare_pantograph(placed, row, settings)
         warnings += remarks
-    line, remarks = _prepare_line(samples, section, position)
+    line, remarks = _prepare_line(placed, section)
     train = extend_train(time, position, nominal)
     alignments = tuple(align_source(source, train) for source in samples.sources.uplift)
     lines = [join_uplift(line, alignments, train, side) for side in (0, -1, 1)]
@@ -263,24 +264,30 @@ def _outlier_warnings(force: RealArray, position: RealArray, name: str) -> list[
     ]
 
 
-def _prepare_line(
-    samples: RecordSamples, section: tuple[float, float], position: RealArray
-) -> tuple[LineSignals, list[str]]:
+def _prepare_line(placed: PlacedSamples, section: tuple[float, float]) -> tuple[LineSignals, list[str]]:
     """Uplift of the supports where no value that counts is missing, and warnings."""
-    uplift = samples.uplift
-    if uplift is None or samples.support_position is None:
+    supports, uplift = placed.samples.support_position, placed.samples.uplift
+    if uplift is None or supports is None:
         return LineSignals(section), []
-    missing, last_position = ~np.isfinite(uplift), position.min(axis=0)
+    missing, last_position = ~np.isfinite(uplift), placed.position.min(axis=0)
     warnings = []
     if missing.any():
         warnings.append(
             f"{format_share(missing)} of the uplift is missing; supports with missing values that count are not "
             "evaluated"
         )
-    complete = ~has_gaps(samples.support_position, uplift, last_position)
-    supports = samples.support_position[complete]
-    line = LineSignals(section, supports, uplift[complete], last_position=last_position)
-    return refuse_faulty_uplift(line, position), warnings
+    lost = np.array([_has_lost_samples(place, placed) for place in supports])
+    complete = ~has_gaps(supports, uplift, last_position) & ~lost
+    line = LineSignals(section, supports[complete], uplift[complete], last_position=last_position)
+    return refuse_faulty_uplift(line, placed.position), warnings
+
+
+def _has_lost_samples(place: float, placed: PlacedSamples) -> bool:
+    """Whether a record has a gap at the passage of a support [m], or ends too early behind it, as of a source."""
+    first, last = placed.position.max(axis=0), placed.position.min(axis=0)
+    steps = np.diff(placed.time)[(first[1:] >= place - UPLIFT_STRETCH_M) & (last[:-1] <= place + UPLIFT_STRETCH_M)]
+    ends = not steps.size or last[-1] < place + UPLIFT_STRETCH_M
+    return bool(ends or steps.max() > GAP_STEPS * np.median(steps))
 
 
 def _ignored_notes(samples: RecordSamples) -> list[str]:

@@ -30,7 +30,7 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.samples import RecordSamples, build_record
 from pantocheck.conformance.records.source_alignment import RecordSources
-from pantocheck.conformance.records.source_reading import read_sources
+from pantocheck.conformance.records.source_reading import COPIED, read_sources, refuse_copies
 from pantocheck.conformance.records.table_rows import find_impossible_values, read_rows, read_single_table
 from pantocheck.conformance.records.track_position import (
     ARCING,
@@ -194,6 +194,9 @@ def _read_channel_rows(
         sources = read_sources(sidecar_path, sidecar, table, rows)
         for name, added in sources.rows.items():
             rows[name] = {**rows.get(name, {}), **added}
+        for name in COPIED:
+            numbered = {CHANNELS[name].column(k): (path.name, row) for k, row in rows.get(name, {}).items()}
+            refuse_copies(name, numbered, {}, sidecar_where)
         errors += _find_missing_channels(rows, sidecar, where)
     for name in rows.keys() - MARKS:
         errors += find_impossible_values(name, rows[name], where)

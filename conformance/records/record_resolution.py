@@ -180,8 +180,9 @@ def _change_samples(signals: ChannelSignals, change: Callable[[RealArray], RealA
         for number, pantograph in signals.pantographs.items()
     }
     uplift = signals.line.support_uplift
-    line = replace(signals.line, support_uplift=None if uplift is None else np.array([change(row) for row in uplift]))
-    return signals.evaluate_channels(pantographs, line)
+    if uplift is not None and uplift.size:
+        uplift = np.array([change(row) for row in uplift])
+    return signals.evaluate_channels(pantographs, replace(signals.line, support_uplift=uplift))
 
 
 def _fill(values: ValuesByOwner, number: float) -> ValuesByOwner:

@@ -25,6 +25,8 @@ class RecordSignals(SectionEvaluations):
     """Positions of all supports of the line [m]; None if they are not known."""
     overlaps: Sequence[Stretch] = ()
     """Overlaps of the tension sections of the line."""
+    run: tuple[float, float] | None = None
+    """Positions of the first pantograph at the start, and of the last one at the end, of the run of the case [m]."""
 
     @cached_property
     def pantographs(self) -> dict[int, PantographSignals]:
@@ -44,7 +46,7 @@ class RecordSignals(SectionEvaluations):
     @cached_property
     def line(self) -> LineSignals:
         """Uplift at the supports; of a sensor with a fault, none counts."""
-        return refuse_faulty_uplift(self.delivered_line, self.record.position)
+        return refuse_faulty_uplift(self.delivered_line, self.record.position, self.run and self.run[0])
 
     @cached_property
     def delivered_line(self) -> LineSignals:
@@ -56,6 +58,7 @@ class RecordSignals(SectionEvaluations):
             record.support_uplift,
             self.line_supports,
             record.position.min(axis=0),
+            run_end=self.run and self.run[1],
         )
 
     @cached_property

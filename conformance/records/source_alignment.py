@@ -22,7 +22,7 @@ from pantocheck.conformance.quantities.line_signals import (
 )
 from pantocheck.conformance.records.clock_join import PULSE_LENGTH_M, SMALLEST_MATCH, Clock, Passages, fit_clock
 from pantocheck.conformance.records.record import ChannelRows
-from pantocheck.conformance.records.uplift_sensor import find_inversion, find_missing_rest, find_uplift_fault
+from pantocheck.conformance.records.uplift_sensor import find_inversion, find_uplift_fault
 
 PULSE_SHIFT_M = 1.0
 """Largest distance of a pulse from its support in the simulated passages of the library [m]."""
@@ -283,16 +283,14 @@ def list_short_ends(alignments: Sequence[Alignment], train: PlacedTrain, section
                     )
 
 
-def list_sensor_faults(
-    alignment: Alignment, train: PlacedTrain, section: tuple[float, float] = (-np.inf, np.inf)
-) -> Iterator[str]:
+def list_sensor_faults(alignment: Alignment, train: PlacedTrain, section: tuple[float, float]) -> Iterator[str]:
     """Faults of the sensors of a source at the supports of a section [m], by a clock that is stated or confirmed."""
     source = alignment.source
     usable = alignment.state == "confirmed" or (alignment.state == "unconfirmed" and source.kind != "passage")
     first, last = train.place_ends(alignment.clock.convert(source.time))
     inside = supports_inside(source.supports, section) & usable
     for place, row in zip(source.supports[inside], source.uplift[inside], strict=True):
-        fault = find_uplift_fault(float(place), row, first, last) or find_missing_rest(float(place), row, first)
+        fault = find_uplift_fault(float(place), row, first, last)
         if fault is not None and fault not in alignment.finding:
             yield f"{source.name}: {fault}"
 

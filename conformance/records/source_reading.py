@@ -43,6 +43,9 @@ SAME_RATE_SHARE = 0.01
 SECOND_TOLERANCE_S = 0.4
 """Largest difference of two pulses of the same second, by the stated offset [s]."""
 
+COPIED = {"uplift": "support", "force": "pantograph"}
+"""Channels whose samples are never equal at two supports or pantographs."""
+
 FEWEST_TIES = 2
 """Smallest number of seconds or marks that join two clocks: one alone may be a disturbance."""
 
@@ -87,7 +90,7 @@ def read_sources(sidecar_path: Path, sidecar: RecordSidecar, table: MeasuredTabl
             values = np.vstack([own["uplift"][k] for k in sorted(own["uplift"])])
             uplift.append(SourceSamples(name, source.join.kind, time, places, values, clock))
             columns = {CHANNELS["uplift"].column(k): (name, row) for k, row in sorted(own["uplift"].items())}
-            _refuse_copies(columns, uplifts, where)
+            refuse_copies("uplift", columns, uplifts, where)
             uplifts |= columns
         if "force" in own:
             _check_rate(time, rows["time"][1], where, name)
@@ -114,16 +117,17 @@ def _check_channels(own: ChannelRows, taken: ChannelRows, where: str, name: str)
         raise InputError(f"{where}, {name}", "has no channel beside the time", "Name its columns in [source.columns].")
 
 
-def _refuse_copies(
-    own: Mapping[str, tuple[str, RealArray]], others: Mapping[str, tuple[str, RealArray]], where: str
+def refuse_copies(
+    channel: str, own: Mapping[str, tuple[str, RealArray]], others: Mapping[str, tuple[str, RealArray]], where: str
 ) -> None:
-    """Refuse an uplift with the samples of another support; both by column, with the name of the source."""
+    """Refuse an uplift or force with the samples of another one; both by column, with the name of the source."""
     seen = dict(others)
     for column, (name, values) in own.items():
         for other, (file, known) in seen.items():
             if np.array_equal(values, known, equal_nan=True) and np.unique(values[np.isfinite(values)]).size > 1:
-                found = f"{column} of {name} has the same samples as {other} of {file}, at another support"
-                raise InputError(where, found, "Name the file and column that was recorded at each support.")
+                found = f"{column} of {name} has the same samples as {other} of {file}, at another {COPIED[channel]}"
+                hint = f"Name the file and column that was recorded at each {COPIED[channel]}."
+                raise InputError(where, found, hint)
         seen[column] = name, values
 
 

@@ -1,8 +1,9 @@
 """Faults of uplift sensors: an inverted sign, an overload and a zero error, for which no uplift at a support counts.
 
 The uplift counts from rest, and a passing pantograph lifts the wire. The rest is the median while the first pantograph
-is 100 to 300 m before the support. Where a mast file holds too little of this stretch, its uplift does not count;
-in a table of one clock, such as that of a simulator, it is taken as counted from 0.
+is 100 to 150 m before the support. In a record without the whole of this stretch, the uplift does not count: a zero
+error could not be seen. The stretch is fixed, so that no record passes after a part of it is removed. A run of a case
+may start nearer to the support: its first sample is then the rest.
 """
 
 from collections.abc import Iterator
@@ -16,14 +17,14 @@ from pantocheck.conformance.records.clock_join import NEIGHBOURHOOD_M
 from pantocheck.conformance.records.force_checks import find_clipping
 from pantocheck.conformance.records.record_resolution import find_step
 
-REST_M = (100.0, 300.0)
+REST_M = (100.0, 150.0)
 """Distances of the first pantograph before a support between which the wire there is at rest [m]."""
 
-SHORTEST_REST_M, FEWEST_AT_REST = 20.0, 20
-"""Length [m] and number of samples from which a rest is measured."""
+LONGEST_STEP_M = 2.5
+"""Longest distance between two samples of a rest [m], so that it has at least 20."""
 
 REST_TOLERANCE_M = 2e-3
-"""Accepted rest beside 0 [m]; the largest of 336 simulated supports is 0.21 mm, and sensors drift."""
+"""Accepted rest beside 0 [m]; the largest of the simulated cases of the library is 0.40 mm, and sensors drift."""
 
 REST_SHARE = 0.02
 """Accepted rest as a share of the rise: waves ahead of the train scale with it, and so does a wrong unit."""
@@ -37,12 +38,13 @@ OVERLOAD_STEPS = 100.0
 A rounded parabola has at most 8, a rounded curve of fourth order 80."""
 
 
-def refuse_faulty_uplift(line: LineSignals, position: RealArray) -> LineSignals:
+def refuse_faulty_uplift(line: LineSignals, position: RealArray, run_start: float | None = None) -> LineSignals:
     """Signals of a line whose uplift does not count if a sensor at a support of the analysis section has a fault.
 
     Args:
         line: Uplift at supports with the times of the record.
         position: Positions of the pantographs, (p, n) [m].
+        run_start: Position of the first pantograph at the start of the run of the case [m]; None: no run of a case.
     """
     if line.support_position is None or line.support_uplift is None:
         return line
@@ -52,11 +54,15 @@ def refuse_faulty_uplift(line: LineSignals, position: RealArray) -> LineSignals:
         supports_inside(line.support_position, line.section),
     )
     rows = zip(line.support_position[inside], line.support_uplift[inside], strict=True)
-    faults = [fault for place, row in rows if (fault := find_uplift_fault(float(place), row, first, last)) is not None]
+    whole = run_start is not None and bool(first[0] <= run_start + LONGEST_STEP_M)
+    findings = (find_uplift_fault(float(place), row, first, last, whole) for place, row in rows)
+    faults = [fault for fault in findings if fault is not None]
     return replace(line, fault="; ".join(faults)) if faults else line
 
 
-def find_uplift_fault(support: float, uplift: RealArray, first: RealArray, last: RealArray) -> str | None:
+def find_uplift_fault(
+    support: float, uplift: RealArray, first: RealArray, last: RealArray, whole: bool = False
+) -> str | None:
     """Fault of the sensor at a support in words; None without a fault.
 
     Args:
@@ -64,16 +70,10 @@ def find_uplift_fault(support: float, uplift: RealArray, first: RealArray, last:
         uplift: Uplift there, (n,) [m].
         first: Positions of the first pantograph at the same times, (n,) [m].
         last: Positions of the last pantograph, (n,) [m].
+        whole: Whether the record begins with the run of a case, so that its first sample is at rest.
     """
-    return find_inversion(support, uplift, first, last) or next(_list_other_faults(support, uplift, first, last), None)
-
-
-def find_missing_rest(support: float, uplift: RealArray, first: RealArray) -> str | None:
-    """Absence of the rest from which a measured uplift counts, in words; arguments as of `find_uplift_fault`."""
-    if _find_rest(support, uplift, first).size:
-        return None
-    near, far = REST_M
-    return f"the uplift at {support:g} m has no rest, {near:g} to {far:g} m before the passage, from which it counts"
+    inversion = find_inversion(support, uplift, first, last)
+    return inversion or next(_list_other_faults(support, uplift, first, last, whole), None)
 
 
 def find_inversion(support: float, uplift: RealArray, first: RealArray, last: RealArray) -> str | None:
@@ -90,13 +90,21 @@ def find_inversion(support: float, uplift: RealArray, first: RealArray, last: Re
     )
 
 
-def _list_other_faults(support: float, uplift: RealArray, first: RealArray, last: RealArray) -> Iterator[str]:
+def _list_other_faults(
+    support: float, uplift: RealArray, first: RealArray, last: RealArray, whole: bool
+) -> Iterator[str]:
     rest = _find_rest(support, uplift, first)
+    if whole and not rest.size:
+        rest = uplift[:1][np.isfinite(uplift[:1])]
     passing = _find_passing(support, uplift, first, last, UPLIFT_STRETCH_M)
     if passing.size and is_overloaded(passing):
         top = 1e3 * passing.max()
         yield f"the uplift at {support:g} m is flat at its largest value, {top:.4g} mm: the sensor was overloaded"
-    level = float(np.median(rest)) if rest.size else 0.0
+    if not rest.size:
+        near, far = REST_M
+        yield f"the uplift at {support:g} m has no rest, {near:g} to {far:g} m before the passage, from which it counts"
+        return
+    level = float(np.median(rest))
     tolerance = max(_find_tolerance(rest), REST_SHARE * float(passing.max(initial=level) - level))
     if abs(level) > tolerance:
         yield (
@@ -106,12 +114,11 @@ def _list_other_faults(support: float, uplift: RealArray, first: RealArray, last
 
 
 def _find_rest(support: float, uplift: RealArray, first: RealArray) -> RealArray:
-    """Uplift before the passage, (k,) [m]; empty if the record holds too little of it."""
-    near, far = REST_M
-    inside = np.isfinite(uplift) & (first >= support - far) & (first <= support - near)
-    if inside.sum() < FEWEST_AT_REST or np.ptp(first[inside]) < SHORTEST_REST_M:
-        return np.empty(0)
-    return uplift[inside]
+    """Uplift before the passage, (k,) [m]; empty if the record lacks a part of it."""
+    begin, end = support - REST_M[1], support - REST_M[0]
+    inside = np.isfinite(uplift) & (first >= begin) & (first <= end)
+    gaps = np.diff(first[inside], prepend=begin, append=end)
+    return uplift[inside] if gaps.max() <= LONGEST_STEP_M else np.empty(0)
 
 
 def _find_passing(support: float, uplift: RealArray, first: RealArray, last: RealArray, stretch: float) -> RealArray:

@@ -21,6 +21,9 @@ SHORT_GAP_S = 0.01
 SHORTEST_S = 1.0
 """Shortest usable part [s]: its lowest band, 0-5 Hz, then has a few spectral lines."""
 
+MOST_BACK_M = SUPPORT_TOLERANCE_M
+"""Largest fall of a noisy position that is smoothed [m]; a train that runs back further is not graded."""
+
 SPEED_AVERAGED_S = 1.0
 """Averaging time of the speed [s], so that noise of a position sensor does not appear as a change of speed."""
 
@@ -42,11 +45,10 @@ class UsableSection:
 
 
 def local_speed(time: RealArray, position: RealArray) -> RealArray:
-    """Speed of the train at each sample, averaged over about a second [m/s]."""
-    speed = np.gradient(position, time)
-    width = min(max(1, round(SPEED_AVERAGED_S / float(np.median(np.diff(time))))), speed.size)
-    sums = np.cumsum(np.pad(speed - speed[0], (width // 2 + 1, (width - 1) // 2), mode="edge"))
-    return np.asarray(speed[0] + (sums[width:] - sums[:-width]) / width)
+    """Speed of the train at each sample, averaged over about a second, also at the ends [m/s]."""
+    width = min(2 * max(1, round(SPEED_AVERAGED_S / 2 / float(np.median(np.diff(time))))), time.size - 1)
+    begin = np.clip(np.arange(time.size) - width // 2, 0, time.size - 1 - width)
+    return np.asarray((position[begin + width] - position[begin]) / (time[begin + width] - time[begin]))
 
 
 def find_usable_sections(time: RealArray, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
@@ -145,13 +147,31 @@ def place_samples(samples: RecordSamples, sidecar: RecordSidecar) -> PlacedSampl
         raise RecordInvalid("speed", "fewer than two samples have a positive speed")
     time, position = complete_samples(samples, sidecar)
     if samples.time is not None:
+        position, fall = _smooth_noise(position)
+        if fall:
+            warnings.append(f"the position runs back by up to {fall:.2g} m; it was smoothed")
         samples, time, position = _smooth_steps(samples, time, position)
     for name, axis in (("time", time[None]), ("position", position)):
         backwards = np.argwhere(np.diff(axis, axis=1).T <= 0)
         if backwards.size:
             first = backwards[0][0] + 1
-            raise RecordInvalid(name, f"the value of sample {first + 1} is not greater than that of sample {first}")
+            found = f"the value of sample {first + 1} is not greater than that of sample {first}"
+            if name == "position" and samples.time is not None:
+                found += f", and may run back by {MOST_BACK_M:g} m; cut the record, or use speed_m_s or [position]"
+            raise RecordInvalid(name, found)
     return PlacedSamples(samples, time, position, tuple(warnings))
+
+
+def _smooth_noise(position: RealArray) -> tuple[RealArray, float]:
+    """Increasing positions midway between the largest value so far and the smallest one to come, and the largest fall.
+
+    A fall [m] of more than `MOST_BACK_M` remains.
+    """
+    ahead = np.maximum.accumulate(position, axis=1)
+    fall = float((ahead - position).max())
+    if not 0 < fall <= MOST_BACK_M:
+        return position, 0.0
+    return (ahead + np.minimum.accumulate(position[:, ::-1], axis=1)[:, ::-1]) / 2, fall
 
 
 def _smooth_steps(

@@ -41,7 +41,7 @@ FORCE_NOISE_N, HEIGHT_NOISE_M, UPLIFT_NOISE_M = 1.5, 0.5e-3, 0.3e-3
 """Standard deviations of the noise of the measuring chain."""
 INERTIA_ERROR = 0.05
 """Share of the inertia force of the head that the correction of the measuring chain leaves."""
-FIRST_POSITION_M = 180.0
+FIRST_POSITION_M = 140.0
 """Position of the first pantograph at the first stored sample [m]."""
 STATIC_FORCE_N, STATIC_POSITIONS_M = 100.0, np.arange(100.0, 500.0, 5.0)
 """Force of the measured elasticity, and measured positions."""

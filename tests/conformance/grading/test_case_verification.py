@@ -10,6 +10,7 @@ from helpers.converged_fixtures import StateConverged, build_converged
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.trust import LEVELS, decides_verdict
+from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_verification import (
     VERIFIED_QUANTITIES,
@@ -18,7 +19,6 @@ from pantocheck.conformance.grading.case_verification import (
     tolerance,
 )
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.system import Delivered, Errored, Skipped
 
@@ -40,7 +40,7 @@ def record(twin: Case) -> Record:
 @pytest.fixture
 def values(twin: Case, record: Record) -> Values:
     """Verified quantities of that record."""
-    evaluation = evaluate_record(record, twin.file.filter, twin.line.geometry.supports)
+    evaluation = CaseEvaluation(twin, Delivered(record)).evaluation
     return {
         owner: {name: float(value) for name, value in quantities.items() if name in VERIFIED_QUANTITIES}
         for owner, quantities in evaluation.values.items()

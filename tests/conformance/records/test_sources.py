@@ -8,15 +8,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
 
 from helpers.command_line import pantocheck
 from helpers.measured_pairs import PASSAGE, SPEED, STATED, MeasuredPair, write_german
 from helpers.toml_edit import edit_toml
+from pantocheck.conformance.app.notebook.graded_results import assess_run
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
 from pantocheck.conformance.pages.translation import translate
 from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.records.uplift_sensor import find_uplift_fault
 
 UPLIFT = "max_uplift_at_support_mm"
 SECONDS = 'kind = "pps", column = "PPS", record_column = "PPS", offset_s = 3.4'
@@ -246,7 +250,7 @@ def test_gap_beside_the_passage_hides_no_uplift(tmp_path: Path) -> None:
     write_german(tmp_path / "mast.csv", names, table[np.abs(distance) > 15])
     result = read_results(sidecar)
     assert result["verdict"] == "skip"
-    assert "supports of the analysis section" in result["skipped"]["0"][UPLIFT]
+    assert "the uplift at 420 m has no rest" in result["skipped"]["0"][UPLIFT]
 
 
 def test_uncertain_clock_leaves_an_uplift_near_its_space_undecided(tmp_path: Path) -> None:
@@ -273,10 +277,60 @@ def change_mast(sidecar: Path, change: Callable[[np.ndarray], np.ndarray], pair:
     write_german(sidecar.parent / "mast.csv", names, table)
 
 
+def join_tables(pair: MeasuredPair) -> np.ndarray:
+    """Train and masts in one table of one clock: time, position, forces [N], uplifts [mm]."""
+    train, masts = pair.train(), pair.masts()
+    columns = [np.interp(train[:, 0], masts[:, 0] + pair.offset, column) for column in masts[:, 1:].T]
+    return np.column_stack([train, *columns])
+
+
+def write_joined(folder: Path, table: np.ndarray) -> Path:
+    """Write such a table of two pantographs, and its sidecar without further sources."""
+    sidecar = MeasuredPair().write(folder, STATED)
+    names = ["Zeit [s]", "Weg [m]", "Kraft 1 [N]", "Kraft 2 [N]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))]
+    write_german(folder / "zug.csv", names, table)
+    uplifts = {f"columns.uplift_{n}_m": {"column": f"Anhub Mast {n} [mm]"} for n in (1, 2, 3)}
+    return edit_toml(sidecar, {"source": None, **uplifts})
+
+
+@settings(max_examples=4, deadline=None)
+@given(cut=st.tuples(st.floats(0, 1), st.floats(0, 1)), inside=st.booleans())
+@example(cut=(0.0, 0.0), inside=True)
+@example(cut=(0.0, 0.3), inside=True)  # the rest of the first support, 150 to 200 m, is in the first 26 %
+@example(cut=(0.38, 0.39), inside=True)  # the passage of the first support
+@example(cut=(0.81, 0.88), inside=True)  # a wave behind the last support, outside the sections of the forces
+@example(cut=(0.0, 0.82), inside=False)  # ends 11 m past the last support
+@example(cut=(0.0, 0.5), inside=False)  # no support is left
+@pytest.mark.parametrize("fault", ["none", "zero", "wave before", "wave behind"])
+def test_cut_of_a_table_of_one_clock_never_improves_its_verdict(
+    fault: str, cut: tuple[float, float], inside: bool, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Rows inside or outside of a part are lost; the uplift is 5 mm too small, or a wave exceeds 80 mm."""
+    table = join_tables(MeasuredPair(noise=0.0))
+    if fault == "wave before":
+        table[:, 4] += 90 * np.exp(-(((table[:, 1] - 250) / 5) ** 2))
+    elif fault == "wave behind":
+        table[:, 6] += 90 * np.exp(-(((table[:, 1] - 200 - 450) / 5) ** 2))
+    elif fault == "zero":
+        table[:, 4:] -= 5.0
+    kept = np.full(len(table), inside)
+    begin, end = (int(part * len(table)) for part in sorted(cut))
+    kept[begin:end] = not inside
+    assume(np.count_nonzero(kept) > 100)
+    sidecar = write_joined(tmp_path_factory.mktemp("cut"), table[kept])
+    try:
+        verdict = assess_run(sidecar, "acceptance-ac").results.cases[0].verdict
+    except InputError:
+        assert not kept.all()
+        return
+    assert verdict == {"none": "pass", "zero": "skip"}.get(fault, "fail") or not kept.all()
+    assert verdict != "pass" or fault == "none"
+
+
 FAULTS: dict[str, tuple[Callable[[np.ndarray], np.ndarray], str]] = {
     "inverted": (np.negative, "the uplift at 360 m falls by 5"),
     "overloaded": (lambda uplift: np.minimum(uplift, 30.0), "the uplift at 360 m is flat at its largest value, 30 mm"),
-    "zero error": (lambda uplift: uplift - 20.0, "the uplift at 360 m is -20 mm at rest, before the passage"),
+    "zero error": (lambda uplift: uplift - 20.0, "the uplift at 360 m is -19.9 mm at rest, before the passage"),
     "zero error of 3 mm": (lambda uplift: uplift + 3.0, "mm at rest, before the passage, and not 0 within 2 mm"),
 }
 
@@ -289,19 +343,9 @@ def test_faulty_sensor_of_one_mast_is_named_and_not_graded(fault: str, files: in
     sidecar = MeasuredPair().write(tmp_path, STATED)
     change_mast(sidecar, change)
     if files == 1:
-        train, masts = (
-            MeasuredPair().train(),
-            np.loadtxt(
-                tmp_path / "mast.csv", delimiter=";", skiprows=1, converters=lambda text: float(text.replace(",", "."))
-            ),
-        )
-        columns = [np.interp(train[:, 0], masts[:, 0] + 3.217, column) for column in masts[:, 1:].T]
-        if fault == "overloaded":
-            columns[1] = np.minimum(columns[1], 30.0)
-        names = ["Zeit [s]", "Weg [m]", "Kraft 1 [N]", "Kraft 2 [N]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))]
-        write_german(tmp_path / "zug.csv", names, np.column_stack([train, *columns]))
-        uplifts = {f"columns.uplift_{n}_m": {"column": f"Anhub Mast {n} [mm]"} for n in (1, 2, 3)}
-        edit_toml(sidecar, {"source": None, **uplifts})
+        table = join_tables(MeasuredPair())
+        table[:, 5] = change(table[:, 5])
+        sidecar = write_joined(tmp_path, table)
     result = read_results(sidecar)
     assert result["verdict"] == "skip"
     assert reason in result["skipped"]["0"][UPLIFT]
@@ -351,8 +395,16 @@ def test_mast_file_without_a_rest_does_not_pass(tmp_path: Path) -> None:
     result = read_results(sidecar)
     assert result["verdict"] == "skip"
     reasons = [row["reason"] for row in result["criteria"] if row["quantity"] == UPLIFT]
-    assert "has no rest, 100 to 300 m before the passage" in reasons[0]
+    assert "has no rest, 100 to 150 m before the passage" in reasons[0]
     assert translate(reasons[0], "de").missing == ()
+
+
+@pytest.mark.parametrize(("begin", "gap", "fault"), [(0, 1, "mm at rest"), (0, 3, "no rest"), (155, 1, "no rest")])
+def test_rest_counts_as_a_whole(begin: int, gap: int, fault: str) -> None:
+    """The zero is -4 mm up to 120 m before the support, and 0 behind it; a part of the rest would pass."""
+    place = np.r_[begin:180, 180 + gap : 400].astype(float)
+    uplift = 0.05 * np.exp(-np.abs(place - 300) / 12) - 0.004 * (place < 180)
+    assert fault in (find_uplift_fault(300.0, uplift, place, place) or "")
 
 
 @pytest.mark.parametrize("copy", ["same column", "copied file"])

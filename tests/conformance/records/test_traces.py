@@ -48,11 +48,11 @@ def test_filtered_force_or_uncovered_section_has_less_to_draw() -> None:
 
 def test_uplift_is_drawn_in_millimetres_at_each_support() -> None:
     """Uplifts of 40 mm and 50 mm at the supports of the section, 90 mm outside it."""
-    supports, time = np.array([60.0, 120.0, 300.0]), np.arange(20_000) / RATE
+    supports, time = np.array([210.0, 270.0, 450.0]), np.arange(20_000) / RATE
     bumps = np.array([[0.04], [0.05], [0.09]]) * np.exp(-(((SPEED * time - supports[:, None]) / 5) ** 2))
-    item = signals(evaluated=(50.0, 150.0), support_position=supports, support_uplift=bumps)
+    item = signals(evaluated=(200.0, 300.0), support_position=supports, support_uplift=bumps)
     traces = build_uplift_traces(item.line, item.record.time)
-    assert [trace.support_m for trace in traces] == [60.0, 120.0]
+    assert [trace.support_m for trace in traces] == [210.0, 270.0]
     # The bump is sampled every 0.25 m and drawn every fourteenth time, so that the peak is met within 1.75 m: 12 %.
     assert [max(trace.uplift_mm) for trace in traces] == pytest.approx([40.0, 50.0], rel=0.12)
     assert all(len(trace.uplift_mm) == len(trace.time_s) <= MAX_POINTS for trace in traces)

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from helpers.record_keys import record_keys
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.pages.translation import translate
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples
@@ -26,12 +27,14 @@ from pantocheck.conformance.records.usable_sections import (
 
 @pytest.mark.parametrize(("size", "rate"), [(1001, 101.0), (301, 51.0)])
 def test_speed_is_averaged_over_a_second(size: int, rate: float) -> None:
-    """Mean of the slopes at the samples of the surrounding second; both rates are odd, so that it is centred."""
+    """Both rates are odd: the second is centred with one sample less. At the ends it is the first or last one."""
     time = np.arange(size) / rate
     position = 50 * time + np.random.default_rng(3).uniform(0, 0.3, size)
-    expected = np.convolve(np.gradient(position, time), np.full(int(rate), 1 / rate), mode="valid")
-    half = int(rate) // 2
-    assert_allclose(local_speed(time, position)[half:-half], expected, rtol=1e-9)
+    half = round(rate / 2)
+    expected = (position[2 * half :] - position[: -2 * half]) / (2 * half / rate)
+    found = local_speed(time, position)
+    assert_allclose(found[half:-half], expected, rtol=1e-9)
+    assert_allclose(found[[0, -1]], expected[[0, -1]], rtol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -60,8 +63,8 @@ def test_unusable_samples_are_a_gap_and_short_records_have_a_speed() -> None:
     # Five samples in half a second, and samples every 2.5 s: the slope of a straight line.
     for time in (np.arange(5) / 10, np.arange(4) * 2.5):
         assert_allclose(local_speed(time, 50 * time), 50.0, rtol=1e-12)
-    coarse = np.arange(4) * 2.5
-    assert_allclose(local_speed(coarse, coarse**2), np.gradient(coarse**2, coarse), rtol=1e-12)
+    coarse = np.arange(4) * 2.5  # x = t^2: means over the two intervals around a sample, or at the end
+    assert_allclose(local_speed(coarse, coarse**2), [5.0, 5.0, 10.0, 10.0], rtol=1e-12)
 
 
 @pytest.mark.parametrize(("samples", "found"), [(100, 0), (102, 1)])
@@ -234,6 +237,33 @@ def test_standing_train_has_samples_only_where_it_moves() -> None:
     assert placed.warnings == ("10 % of the samples were discarded: the train stands still",)
     assert place(time=TIME, speed=speed, position=POSITION[None]).samples.force.shape == (2, SAMPLES)
     assert place(speed=np.full(SAMPLES, 50.0), position=POSITION[None]).warnings == ()
+
+
+@pytest.mark.parametrize("jitter_m", [0.0, 0.2])
+def test_kilometres_with_four_decimals_keep_the_ends_of_a_record(jitter_m: float) -> None:
+    """At 1 kHz and 70 m/s the positions stand still or step by 0.1 m, and noise moves them back and forth."""
+    time = np.arange(5000) / 1000
+    noise = jitter_m * np.random.default_rng(3).uniform(-0.5, 0.5, time.size)
+    position = np.round(70.0 * time + noise, 1)[None]
+    placed = place(force=np.ones((2, time.size)), time=time, position=position)
+    assert np.all(np.diff(placed.position) > 0)
+    # Half of the noise beside half of a step, and the smoothing adds no more.
+    assert np.abs(placed.position[0] - 70.0 * placed.time).max() < 0.1 + jitter_m
+    # A step and twice half of the noise over 70 m.
+    assert np.abs(local_speed(placed.time, placed.position[0]) / 70 - 1).max() < (0.1 + jitter_m) / 60
+    assert [text.startswith("the position runs back by up to 0.") for text in placed.warnings] == [True] * bool(
+        jitter_m
+    )
+    assert [translate(text, "de").missing for text in placed.warnings] == [()] * len(placed.warnings)
+
+
+@pytest.mark.parametrize(("fall", "refused"), [(0.49, False), (0.51, True)])
+def test_train_that_runs_back_further_than_a_support_is_known_is_refused(fall: float, refused: bool) -> None:
+    position = put(POSITION[None], 70, POSITION[69] - fall)
+    refusal = pytest.raises(RecordInvalid, match=r"back by 0\.5 m; cut the record")
+    with refusal if refused else nullcontext():
+        (warning,) = place(time=TIME, position=position).warnings
+        assert warning == "the position runs back by up to 0.49 m; it was smoothed"
 
 
 @pytest.mark.parametrize(("known", "refused"), [(1, True), (2, False)])
