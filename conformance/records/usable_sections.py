@@ -155,10 +155,11 @@ def place_samples(samples: RecordSamples, sidecar: RecordSidecar) -> PlacedSampl
         backwards = np.argwhere(np.diff(axis, axis=1).T <= 0)
         if backwards.size:
             first = backwards[0][0] + 1
-            found = f"the value of sample {first + 1} is not greater than that of sample {first}"
-            if name == "position" and samples.time is not None:
-                found += f", and may run back by {MOST_BACK_M:g} m; cut the record, or use speed_m_s or [position]"
-            raise RecordInvalid(name, found)
+            raise RecordInvalid(
+                name,
+                f"the value of sample {first + 1} is not greater than that of sample {first}"
+                + ("" if name == "time" else f" (noise of {MOST_BACK_M:g} m is smoothed); cut it, or use speed_m_s"),
+            )
     return PlacedSamples(samples, time, position, tuple(warnings))
 
 

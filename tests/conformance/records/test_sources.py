@@ -424,6 +424,18 @@ def test_mast_of_one_support_cannot_stand_for_another(copy: str, tmp_path: Path)
     assert text in " ".join(done.output.split())
 
 
+@pytest.mark.parametrize(("column", "copy", "text"), [
+    (4, 5, "uplift_2_m of zug.csv has the same samples as uplift_1_m of zug.csv, at another support"),
+    (2, 3, "force_2_N of zug.csv has the same samples as force_1_N of zug.csv, at another pantograph"),
+])  # fmt: skip
+def test_copied_column_of_one_table_is_refused(column: int, copy: int, text: str, tmp_path: Path) -> None:
+    table = join_tables(MeasuredPair())
+    table[:, copy] = table[:, column]
+    done = pantocheck("check", write_joined(tmp_path, table), COLUMNS="400")
+    assert done.exit_code == 2
+    assert text in " ".join(done.output.split())
+
+
 # Position from another file.
 def write_position(folder: Path, join: str, clock: Callable[[np.ndarray], np.ndarray]) -> Path:
     """Position and speed in a file of 10 Hz, with a time of its own."""

@@ -260,7 +260,7 @@ def test_kilometres_with_four_decimals_keep_the_ends_of_a_record(jitter_m: float
 @pytest.mark.parametrize(("fall", "refused"), [(0.49, False), (0.51, True)])
 def test_train_that_runs_back_further_than_a_support_is_known_is_refused(fall: float, refused: bool) -> None:
     position = put(POSITION[None], 70, POSITION[69] - fall)
-    refusal = pytest.raises(RecordInvalid, match=r"back by 0\.5 m; cut the record")
+    refusal = pytest.raises(RecordInvalid, match=r"noise of 0\.5 m is smoothed")
     with refusal if refused else nullcontext():
         (warning,) = place(time=TIME, position=position).warnings
         assert warning == "the position runs back by up to 0.49 m; it was smoothed"
