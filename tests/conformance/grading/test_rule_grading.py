@@ -23,7 +23,8 @@ REAR = {"mean_force_N": 122.0, "std_force_N": 36.0}
 def summary(path: Path, *pantographs: dict[str, float], **keys: Any) -> AssessedRecord:
     """Summary of a train at 250 km/h."""
     content = {"schema": "pantocheck.summary/1", "speed_km_h": 250.0, "filter_cutoff_Hz": 20.0, "trust": "primary"}
-    write_toml(path, content | {"source": f"report {path.stem}", "pantograph": list(pantographs)} | keys)
+    stated = {"evaluated_m": [300.0, 900.0], "source": f"report {path.stem}", "pantograph": list(pantographs)}
+    write_toml(path, {key: value for key, value in (content | stated | keys).items() if value is not None})
     return load_assessed_record(path, load_profile("line-test"), LineTable())
 
 
@@ -49,6 +50,13 @@ def measured(tmp_path: Path) -> AssessedRecord:
 def test_profile_without_a_comparison(train: AssessedRecord, measured: AssessedRecord) -> None:
     with pytest.raises(InputError, match="does not compare with a measured record"):
         assess_record(train, load_profile("acceptance-ac"), "secondary", measured)
+
+
+def test_summary_without_a_section_is_not_compared(train: AssessedRecord, profile: Profile, tmp_path: Path) -> None:
+    other = summary(tmp_path / "other.toml", FRONT, REAR | {"std_force_N": 37.0}, evaluated_m=None)
+    for pair in ((train, other), (other, train)):
+        with pytest.raises(InputError, match="the analysis section is not stated"):
+            assess_record(pair[0], profile, "provisional", pair[1])
 
 
 def test_each_rule_for_each_pantograph(train: AssessedRecord, measured: AssessedRecord, profile: Profile) -> None:
