@@ -51,7 +51,7 @@ def list_painted_data(figure: Any) -> list[DrawnData]:
     """Lines, bars and segments of a figure of matplotlib; the values of images and maps are left out."""
     found = []
     for axes in figure.axes:
-        panel = name_panel(axes.get_xlabel(), axes.get_ylabel())
+        panel = name_panel(axes.get_xlabel(), axes.get_ylabel().replace("\n", " "))
         for line in axes.lines:
             x, y = (np.ma.filled(np.ma.asarray(part, np.float64), np.nan) for part in line.get_data())
             found.append(DrawnData(panel, _clean_label(line), x, y))

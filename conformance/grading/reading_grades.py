@@ -72,7 +72,7 @@ def list_reading_remarks(
     judged = judge(criterion.value, criterion.lower, criterion.upper)
     others = [(f"under the reading '{reading.id}'", *judge_reading(criterion, reading)) for reading in readings]
     others += [
-        (f"with {name}, by the change of the reference simulator,", value, verdict)
+        (f"with {name}, an effect computed with the reference simulator,", value, verdict)
         for name, value, verdict in _judge_contacts(criterion, conditions)
     ]
     return [

@@ -24,8 +24,9 @@ CAMPAIGN_ENDINGS = {
 }
 
 CAMPAIGN_SCOPE = (
-    "Each run is one simulation with the discretisation of its case, unless the campaign asks for refined runs. The "
-    "table campaign.csv has all inputs, verdicts and quantities of every run."
+    "Each run is one simulation with the discretisation of its case, unless the campaign states refined runs. A "
+    "changed library case has no limits: without limits of the user, its verdict is info. The table campaign.csv has "
+    "all inputs, verdicts and quantities of every run."
 )
 
 SHOWN_ROWS = 100
@@ -55,7 +56,7 @@ def build_campaign_report(results: CampaignResults) -> doc.Document:
         blocks.append(doc.Paragraph(f"{results.omitted_maps} further maps are left out; campaign.csv has all values."))
     if maps or charts:
         blocks.append(doc.Section("Figures", (doc.Figures((*maps, *charts)),)))
-    return doc.build_plain_document(results.title, counts + CAMPAIGN_ENDINGS[results.ending], blocks)
+    return doc.build_plain_document(f"Campaign: {results.title}", counts + CAMPAIGN_ENDINGS[results.ending], blocks)
 
 
 def _draw(chart: Chart) -> str:

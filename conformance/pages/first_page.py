@@ -106,12 +106,12 @@ def build_answers(
     """
     digest, date = identity
     answers: dict[str, tuple[str, Iterable[doc.Block]]] = {
-        "tested": ("What was tested", _describe_object(results)),
-        "basis": ("Against what", _describe_basis(results, anchors, first_page)),
+        "tested": ("Tested item", _describe_object(results)),
+        "basis": ("Cases and limits", _describe_basis(results, anchors, first_page)),
         "result": ("Result", _describe_result(results, first_page)),
         "use": ("Use", _describe_use(results, first_page)),
         "document": ("Issued by", [doc.Facts(list_issuer_facts(results, date))]),
-        "check": ("How to check", [doc.Facts(list_check_facts(results, digest))]),
+        "check": ("Check of this document", [doc.Facts(list_check_facts(results, digest))]),
     }
     return doc.Answers(tuple(doc.Section(title, tuple(blocks), name) for name, (title, blocks) in answers.items()))
 

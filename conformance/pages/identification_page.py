@@ -162,7 +162,7 @@ def list_record_blocks(line: IdentifiedLine) -> Iterator[doc.Block]:
         yield doc.Figures((figure,))
     yield _record_table(line.records)
     if line.clocks:
-        stated = {None: "not stated", True: "one clock", False: "clocks of their own"}[line.shared_clock]
+        stated = {None: "no statement on clocks", True: "one clock", False: "one clock each"}[line.shared_clock]
         yield _clock_table(line.clocks, stated)
     figures_of_time = [_stretch_figure(record) for record in line.records if record.residual_time_s]
     yield doc.Figures((*figures_of_time, _spectrogram_figure(line.spectrogram, line.records[0])))
@@ -174,8 +174,8 @@ def _stretch_figure(record: IdentifiedRecord) -> doc.Figure:
         draw_stretch(record),
         f"Residual of the fitted decays through the record {record.name}, over the motion at rest before the release. "
         f"The part from {start} s to {end} s after the release is used.",
-        f"{record.name}: choice of the used part (shaded). Line: residual of a sum of decays, in windows of 4 s, over "
-        "the motion at rest (dashed: equal); it grows where droppers slacken or the line is moved.",
+        f"{record.name}: choice of the used part (shaded). Line: residual of the fitted decays in windows of 4 s, "
+        "divided by the motion at rest (dashed: 1). It grows where droppers slacken or a force moves the line.",
     )
 
 
@@ -235,10 +235,10 @@ def _clock_table(clocks: Sequence[IdentifiedClock], stated: str) -> doc.Table:
     cells: dict[str, Callable[[IdentifiedClock], str]] = {
         "Sensor": lambda clock: str(clock.sensor),
         "Rate [ppm]": lambda clock: f"{format_value(clock.rate_ppm, 3)} ± {format_value(clock.rate_std_ppm, 2)}",
-        "Start [ms]": lambda clock: format_value(clock.start_ms, 2),
+        "Start [ms]": lambda clock: format_value(round(clock.start_ms, 6), 2),
         "Corrected": lambda clock: "yes" if clock.corrected else "no",
     }
-    return doc.make_grid(f"Clocks of the sensors against the first one; stated: {stated}", clocks, cells)
+    return doc.make_grid(f"Clocks of the sensors relative to the first one; the records state: {stated}", clocks, cells)
 
 
 # Frequency responses.

@@ -62,7 +62,7 @@ def draw_track(groups: Sequence[SectionGroup]) -> "Figure":
     ranges = [[value.mean - value.lowest for value in values], [value.highest - value.mean for value in values]]
     force.errorbar(middles, [value.mean for value in values], ranges, fmt=".", color=INK, markersize=2, elinewidth=0.5)
     force.set_ylabel("mean force [N]")
-    force.set_ylim(bottom=0)
+    force.set_ylim(0, 1.1 * max((value.highest for value in values), default=1.0))
     verdicts = _list_verdicts(groups)
     for verdict in dict.fromkeys(sorted(verdicts.values(), key=WORST_FIRST.index)):
         spans = [(x.from_km, x.to_km - x.from_km) for x, own in verdicts.items() if own == verdict]

@@ -9,7 +9,14 @@ from pantocheck.conformance.core.verdicts import WORST_FIRST
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.network_figures import draw_network_map, draw_trace, draw_track, list_coordinates
 from pantocheck.conformance.pages.study_chart import draw_chart
-from pantocheck.conformance.pages.words import clean_text, clean_tree, format_value, quantity_label, quantity_unit
+from pantocheck.conformance.pages.words import (
+    clean_text,
+    clean_tree,
+    format_plain,
+    format_value,
+    quantity_label,
+    quantity_unit,
+)
 from pantocheck.conformance.results.network_format import (
     ForcePlace,
     MisplacedRun,
@@ -21,9 +28,9 @@ from pantocheck.conformance.results.network_format import (
 )
 
 NETWORK_SCOPE = (
-    "A section passes if all passages over the whole of it pass. A section that no run measured as a whole is skipped. "
-    "The verdict is self-declared, in the style of EN 50318. passages.csv has every passage; the range of a mean is by "
-    "Student's t over the passages, and its coverage is not measured."
+    "A section passes if every passage over its whole length passes. A section without such a passage is skipped. The "
+    "verdict is self-declared, in the style of EN 50318. passages.csv lists every passage. The range of a mean follows "
+    "from Student's t over the passages; its coverage is not measured."
 )
 
 NETWORK_COLUMNS = ("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N", "contact_loss_pct")
@@ -81,7 +88,7 @@ def build_run_page(run: str, passages: Sequence[SectionPassage]) -> doc.Document
     cells = {
         **_list_section_columns(),
         doc.Column("Pantograph"): lambda x: x.pantograph,
-        doc.Column("Speed km/h", number=True): lambda x: format_value(x.speed_km_h),
+        doc.Column("Speed [km/h]", number=True): lambda x: format_value(x.speed_km_h),
         doc.Column("Verdict"): lambda x: doc.VerdictMark(x.verdict),
         **{_head(name): lambda x, name=name: format_value(x.values.get(name)) for name in _list_known(passages)},
         doc.Column("Reason", share=1): lambda x: x.reason,
@@ -121,7 +128,7 @@ def _tabulate_groups(groups: Sequence[SectionGroup]) -> doc.Table:
     if len(shown) > MOST_GROUPS:
         shown = sorted(shown, key=lambda group: WORST_FIRST.index(group.verdict))[:MOST_GROUPS]
     classes: dict[doc.Column, Callable[[SectionGroup], str]] = {
-        doc.Column("Speed km/h", choice="value"): _name_speed,
+        doc.Column("Speed [km/h]", choice="value"): _name_speed,
         doc.Column("Kilometres", choice="value"): lambda x: x.direction or "",
         doc.Column("Pantograph", choice="value"): lambda x: x.pantograph or "",
     }
@@ -152,7 +159,7 @@ def _format_repeated(group: SectionGroup, name: str) -> str:
     value = group.values.get(name)
     if value is None:
         return "–"
-    return format_value(value.mean) + ("" if value.mean_range is None else f" ± {format_value(value.mean_range)}")
+    return format_value(value.mean) + ("" if value.mean_range is None else f" ± {format_value(value.mean_range, 2)}")
 
 
 def _link_run(run: str) -> doc.PageLink:
@@ -164,15 +171,15 @@ def _tabulate_places(places: Sequence[ForcePlace]) -> doc.Table:
         doc.Column("Line", choice="value"): lambda x: x.line,
         doc.Column("Track", choice="value"): lambda x: x.track,
         doc.Column("km", number=True): lambda x: f"{x.km:.3f}",
-        doc.Column("Force N", number=True): lambda x: format_value(x.force_N),
-        doc.Column("Deviation", number=True): lambda x: f"{x.deviation:.1f}",
+        doc.Column("Force [N]", number=True): lambda x: format_value(x.force_N),
+        doc.Column("Deviation", number=True): lambda x: format_plain(round(x.deviation, 1)),
         doc.Column("Threshold", number=True): lambda x: f"{x.threshold:.1f}",
-        doc.Column("Extent m", number=True): lambda x: f"{x.extent_m:g}",
+        doc.Column("Extent [m]", number=True): lambda x: f"{x.extent_m:g}",
         doc.Column("Seen in"): lambda x: f"{x.found} of {x.passages}",
         doc.Column("Date", choice="date"): lambda x: str(x.date),
         doc.Column("Pantograph"): lambda x: x.pantograph,
-        doc.Column("Place", share=1): lambda x: x.place,
-        doc.Column("Explained", choice="value"): lambda x: "yes" if x.explained else "no",
+        doc.Column("Known place", share=1): lambda x: x.place,
+        doc.Column("Explained by place", choice="value"): lambda x: "yes" if x.explained else "no",
         doc.Column("Run"): lambda x: _link_run(x.run),
     }
     caption = "Deviation of the filtered force from the neighbouring spans, in robust standard deviations"
@@ -185,8 +192,8 @@ def _tabulate_misplaced(runs: Sequence[MisplacedRun]) -> doc.Table:
         doc.Column("Track", choice="value"): lambda x: x.track,
         doc.Column("Section"): lambda x: f"{x.from_km:.3f} to {x.to_km:.3f} km",
         doc.Column("Pantograph"): lambda x: x.pantograph,
-        doc.Column("Offset m", number=True): lambda x: "–" if x.offset_m is None else f"{x.offset_m:.1f}",
-        doc.Column("Clock s", number=True): lambda x: "–" if x.offset_s is None else f"{x.offset_s:.2f}",
+        doc.Column("Offset [m]", number=True): lambda x: format_plain(x.offset_m and round(x.offset_m, 1)),
+        doc.Column("Error of clock [s]", number=True): lambda x: format_plain(x.offset_s and round(x.offset_s, 2)),
         doc.Column("Agreement", number=True): lambda x: f"{x.agreement:.2f}",
         doc.Column("Run"): lambda x: _link_run(x.run),
     }
@@ -200,10 +207,13 @@ def _tabulate_unusual(values: Sequence[UnusualValue]) -> doc.Table:
         doc.Column("Quantity"): lambda x: quantity_label(x.quantity),
         doc.Column("Value", number=True): lambda x: format_value(x.value),
         doc.Column("Expected", number=True): lambda x: format_value(x.expected),
-        doc.Column("Deviation", number=True): lambda x: f"{x.deviation:.1f}",
+        doc.Column("Deviation", number=True): lambda x: format_plain(round(x.deviation, 1)),
         doc.Column("Run"): lambda x: "all" if x.run is None else _link_run(x.run),
     }
-    caption = "All runs: a section beside the others of its track. One run: a passage beside the others of its section"
+    caption = (
+        "Run 'all': a section compared with the other sections of its track. Otherwise: one passage compared with the "
+        "other passages over its section. Deviation in robust standard deviations"
+    )
     return doc.make_table(values, cells, caption)  # type: ignore[arg-type]
 
 
@@ -242,4 +252,4 @@ def _list_drifts(groups: Sequence[SectionGroup]) -> Iterator[str]:
         for name, value in group.values.items():
             if value.drifts and value.drift is not None:
                 place = f"line {group.section.line}, track {group.section.track}, {_name_section(group.section)}"
-                yield f"{place}: {quantity_label(name)} changes by {value.drift:.3g} {quantity_unit(name)}"
+                yield f"{place}: {quantity_label(name)} changes by {format_value(value.drift, 3)} {quantity_unit(name)}"

@@ -35,6 +35,8 @@ HATCHES = ("", "", "////", "....")
 BAND_OPACITY = 0.18
 TICK_WIDTH = 10
 """Characters on a line of a tick label."""
+LABEL_WIDTH = 30
+"""Characters on a line of the label of a y axis, along the height of a chart."""
 
 
 def find_common_range(charts: Iterable[Chart]) -> tuple[float, float]:
@@ -53,7 +55,7 @@ def draw_chart(data: Chart, y_range: tuple[float, float] | None = None) -> "Figu
     """A chart of a study: one entry of a case's `charts`; `y_range` is the scale that it shares with others."""
     figure = new_figure(FULL, 2.3) if data.wide else new_figure(HALF, 2.1)
     axes = figure.subplots()
-    axes.set(xscale=data.x_scale, yscale=data.y_scale, xlabel=data.x_label, ylabel=data.y_label)
+    axes.set(xscale=data.x_scale, yscale=data.y_scale, xlabel=data.x_label, ylabel=_break_label(data.y_label))
     for axis, scale in ((axes.xaxis, data.x_scale), (axes.yaxis, data.y_scale)):
         if scale == "log":
             label_decades(axis)
@@ -81,6 +83,11 @@ def draw_chart(data: Chart, y_range: tuple[float, float] | None = None) -> "Figu
         longest = max(map(len, labels))
         add_legend(axes, columns=max(1, min(4, (100 if data.wide else 45) // (longest + 8))))
     return figure
+
+
+def _break_label(label: str) -> str:
+    """Label of a y axis, on a second line from its comma on if it is longer than the axis."""
+    return label if len(label) <= LABEL_WIDTH else label.replace(", ", ",\n", 1)
 
 
 def _draw_line(axes: "Axes", series: Series, number: int) -> None:
@@ -194,7 +201,7 @@ def draw_map(data: ValueMap) -> "Figure":
     for bound in (data.lower, data.upper):
         if bound is not None:
             _draw_limit(axes, x, y, values, bound)
-    axes.set(xlabel=data.x_label, ylabel=data.y_label)
+    axes.set(xlabel=data.x_label, ylabel=_break_label(data.y_label))
     return figure
 
 

@@ -32,7 +32,7 @@ READ_WORDS = ("Case", "Digest of the results", "Pantograph", "Value", "Verdict")
 
 SHOWN_WORDS = (
     *(*READ_WORDS, "Quantity", "Uncertainty", "Limits", "Margin", "line", "line, no. {n}", "exact", "not known"),
-    *("Step", "Role", "Cases", "Dossier", "decides the verdict", "for information", "How to check"),
+    *("Step", "Role", "Cases", "Dossier", "decides the verdict", "for information", "Check of this document"),
 )
 """Words that it shows as the pages do, besides those of verdicts, steps, claims and quantities."""
 

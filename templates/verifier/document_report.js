@@ -59,7 +59,7 @@ async function verifyDocument(bytes, name = "document", signatureFile = null, ro
   } else if (document.kind === "PDF") {
     const digest = document.digest ?? "not computed: this browser offers no digests to a local file";
     add("open", "Whether the pages of the PDF print the numbers of the embedded results.", [
-      `The first pages print the digest of the results under 'How to check'. It must be ${digest}.`,
+      `The first pages print the digest of the results under 'Check of this document'. It must be ${digest}.`,
       "An equal digest shows which results the pages name, not that they print the numbers of these results.",
       ...(origin.authentic ? [`The signature covers the visible pages as well: ${origin.signers.join(", ")} signed what they show.`] : []),
     ]);

@@ -31,7 +31,7 @@ def test_sections_are_filtered_by_date_speed_verdict_and_line(network: Callable[
     page = network(1280)
     assert count_rows(page) == 2 * LINES * LENGTH_KM
     verdict, date, speed, line = (
-        page.get_by_label(f"{name}, {SECTIONS}", exact=True) for name in ("Verdict", "Dates", "Speed km/h", "Line")
+        page.get_by_label(f"{name}, {SECTIONS}", exact=True) for name in ("Verdict", "Dates", "Speed [km/h]", "Line")
     )
     for day, measured in (("2026-06-05", True), ("2026-05-20", False), ("2026-05-09", True)):
         date.fill(day)

@@ -119,7 +119,9 @@ def test_value_that_another_contact_moves_over_a_limit_is_marked(case_250: Case)
     near = std.model_copy(update={"value": 26.5})
     remarks = list_reading_remarks(near, [], result.conditions)
     assert any(
-        text.startswith("with contact stiffness +100 %, by the change of the reference simulator, the value is 25.")
+        text.startswith(
+            "with contact stiffness +100 %, an effect computed with the reference simulator, the value is 25."
+        )
         for text in remarks
     )
     assert all(text.endswith("outside the limits") for text in remarks)

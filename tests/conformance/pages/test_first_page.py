@@ -16,7 +16,7 @@ from pantocheck.conformance.pages.translation import translate
 from pantocheck.conformance.results.report_files import LANGUAGES, Language
 from pantocheck.conformance.results.results_format import Results
 
-QUESTIONS = ["What was tested", "Against what", "Result", "Use", "Issued by", "How to check"]
+QUESTIONS = ["Tested item", "Cases and limits", "Result", "Use", "Issued by", "Check of this document"]
 
 
 def list_values(document: Document) -> list[Table]:

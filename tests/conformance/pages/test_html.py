@@ -153,8 +153,8 @@ def test_html_escapes_hostile_text_and_has_data_with_results_only(hostile_text: 
 def test_html_begins_with_the_verdict_and_states_the_self_declaration(page_text: str) -> None:
     seen = " ".join(Outline(page_text).texts)
     seen = seen[seen.index("self-declared") :]  # after the style sheet
-    order = ["FAIL", "1 of 21 values", "What was tested", "Against what", "Decision rule", "Failed", "Not evaluated"]
-    order += ["Margin", "Issued by", "How to check", "All quantities"]
+    order = ["FAIL", "1 of 21 values", "Tested item", "Cases and limits", "Decision rule", "Failed", "Not evaluated"]
+    order += ["Margin", "Issued by", "Check of this document", "All quantities"]
     places = [seen.index(text) for text in order]
     assert places == sorted(places)
     assert "self-declared conformance report, in the style of EN 50318" in page_text
