@@ -20,7 +20,7 @@ from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import ContactTable, PantographFile
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_signals import evaluate_record
+from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import run_passage
 from pantocheck.conformance.runs.command_system import build_case_message
 from pantocheck.model import DiscretisedLine, discretise
@@ -106,10 +106,11 @@ def reference_quantities(case: Case, element: float, step: float, forces: tuple[
     discretisation = case.file.discretisation.model_copy(update={"element_m": element, "time_step_s": step})
     line = discretise(build_catenary(case.line), element)
     record = run_passage(case, line, discretisation, forces).record
-    values = evaluate_record(record, case.file.filter, case.line.geometry.supports).values
+    signals = RecordSignals(record, case.file.filter, case.line.geometry.supports)
+    values = signals.evaluation.values
     quantities = {(k, name): float(values[k][name]) for k in range(1, len(forces) + 1) for name in QUANTITIES}
     quantities |= _strip_quantities(case, record)
-    uplift = float(values[0][LINE_QUANTITIES[0]])
+    uplift = 1e3 * signals.delivered_line.largest_uplift  # of a short run, too, which begins near its supports
     return quantities | {
         (0, name): value for name, value in zip(LINE_QUANTITIES, (uplift, *_elasticity(case, line)), strict=True)
     }
