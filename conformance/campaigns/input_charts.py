@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
+from typing import Literal
 
 import numpy as np
 
@@ -87,10 +88,10 @@ def build_maps(
                 )
 
 
-def mark_limit(value: EvaluatedValue, axis: str) -> list[Mark]:
+def mark_limit(value: EvaluatedValue, axis: Literal["x", "y"]) -> list[Mark]:
     """Lines of a chart at the bounds of a limit."""
-    bounds = [bound for bound in (value.lower, value.upper) if bound is not None]
-    return [Mark(label="limit", axis="y" if axis == "y" else "x", low=bound) for bound in bounds]
+    bounds = {"lower limit": value.lower, "upper limit": value.upper}
+    return [Mark(label=label, axis=axis, low=bound) for label, bound in bounds.items() if bound is not None]
 
 
 def _list_curve_keys(columns: CampaignColumns, keys: Sequence[str]) -> list[str]:
