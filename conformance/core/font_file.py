@@ -60,5 +60,5 @@ def replace_missing_glyphs(text: str) -> str:
     """A text with every character that has no glyph replaced by U+FFFD."""
     if text.isascii():  # most texts, and all figures
         return text
-    glyphs = read_advances()
-    return "".join(c if c.isascii() or ord(c) in glyphs else REPLACEMENT for c in text)
+    missing = {code for code in map(ord, set(text)) if code > 127 and code not in read_advances()}
+    return text.translate(dict.fromkeys(missing, REPLACEMENT)) if missing else text
