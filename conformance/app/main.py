@@ -11,17 +11,12 @@ from typing import NoReturn
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.guard import FULL
 from pantocheck.conformance.app.commands.output_settings import accept_all_characters
-from pantocheck.conformance.core.processes import limit_threads
-
-GARBAGE_THRESHOLD = 300_000
-"""New objects between two searches for cycles of unused objects; with 700, they take 8 % of an identification.
-
-The classes of a command are 130,000 objects: no search begins before its work."""
+from pantocheck.conformance.core.processes import delay_garbage_searches, limit_threads
 
 
 def main() -> None:
     """Entry point of the `pantocheck` command."""
-    gc.set_threshold(GARBAGE_THRESHOLD)
+    delay_garbage_searches()
     # Plug-ins would be searched in every installed package, a tenth of the time of `check`.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     limit_threads()

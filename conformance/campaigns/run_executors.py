@@ -18,7 +18,13 @@ from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_r
 from pantocheck.conformance.core.dask_client import connect_client
 from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.processes import adopt_orphans, end_workers, handle_worker_signals, limit_threads
+from pantocheck.conformance.core.processes import (
+    adopt_orphans,
+    delay_garbage_searches,
+    end_workers,
+    handle_worker_signals,
+    limit_threads,
+)
 
 Execute = Callable[[PlannedRun], RunRow]
 """Function that executes one run; it can be sent to other processes."""
@@ -163,6 +169,7 @@ def _give(run: PlannedRun, idle: list[_Worker], execute: Execute) -> _Worker:
 def _work(connection: Connection, execute: Execute) -> None:
     """Execute runs until the connection ends; an exception becomes the reason of a failed run."""
     handle_worker_signals()
+    delay_garbage_searches()
     with suppress(EOFError, OSError):  # of the connection: the parent has ended
         while True:
             run: PlannedRun = connection.recv()
@@ -179,6 +186,9 @@ TASK_S, MOST_RUNS = 5.0, 200
 
 CAPACITY_S = 1.0
 """Time after which the threads of the cluster are counted again [s]; each count is a message and its answer."""
+
+WORKER_SETTINGS = {"distributed.worker.profile.enabled": False}
+"""Configuration of the workers of Dask: they do not look a hundred times a second what they do."""
 
 _CLASSES: dict[ClusterKind, str] = {
     "slurm": "SLURMCluster",
@@ -255,6 +265,7 @@ def _keep(execute: Execute) -> Execute:
 
 def execute_batch(execute: Execute, runs: Sequence[PlannedRun]) -> tuple[list[RunRow], float]:
     """Execute runs on a worker; an exception becomes the reason of a failed run. Returns the duration, too [s]."""
+    delay_garbage_searches()
     start = time.perf_counter()
     rows = [call_execution(execute, run) for run in runs]
     return rows, time.perf_counter() - start
@@ -299,8 +310,8 @@ def start_cluster(kind: ClusterKind, jobs: int, options: Mapping[str, Any]) -> I
     except (TypeError, ValueError) as error:
         found = f"cannot be used ({error})"
         raise InputError(where, found, "See the options of dask-jobqueue for [execution.cluster_options].") from None
-    limit = {"distributed.scheduler.allowed-failures": MOST_ATTEMPTS - 1}
-    with dask.config.set(limit), cluster, distributed.Client(cluster) as client:
+    settings = {"distributed.scheduler.allowed-failures": MOST_ATTEMPTS - 1, **WORKER_SETTINGS}
+    with dask.config.set(settings), cluster, distributed.Client(cluster) as client:
         cluster.scale(jobs=jobs)
         yield DaskExecutor(client)
 
