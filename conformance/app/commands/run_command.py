@@ -33,7 +33,6 @@ from pantocheck.conformance.app.commands.results_output import build_results_out
 from pantocheck.conformance.cases.library import read_limits
 from pantocheck.conformance.cases.limits import repeat_limits
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.comparison.profile_grading import assess_record
 from pantocheck.conformance.core.decision import parse_decision
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
@@ -256,6 +255,8 @@ def assess_command(
     )
     folder = Path(options.out)
     report_formats = check_formats(options.formats)
+    from pantocheck.conformance.comparison.profile_grading import assess_record  # `run` does not wait for it
+
     rules = load_profile(profile)
     own_limits = () if limits is None else read_limits(limits)
     facts = {"wave_speed_m_s": wave_speed_m_s, "uplift_space_mm": uplift_space_mm}
