@@ -107,7 +107,7 @@ class Case:
 
     @property
     def analysed_spans(self) -> tuple[int, int]:
-        """First and last span of which the analysis section has a part; of a case without a section all spans."""
+        """First and last span that the analysis section touches; without a section, those of the line."""
         if self.file.evaluated_m is not None:
             return self.line.geometry.spans_of_section(*self.file.evaluated_m)
         spans = self.file.evaluated_spans or (1, self.line.geometry.spans)

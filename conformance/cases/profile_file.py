@@ -211,7 +211,7 @@ def own_rules(rules: Iterable[Rule], published: Sequence[Rule]) -> tuple[Rule, .
 
 
 UNREAD = ("tsi", "50367", "50119")
-"""Parts of names of documents of which no rule was read in print."""
+"""Parts of names of documents; none of their rules was read in print."""
 
 UNREAD_HINT = (
     "No rule of this document was read in print. acceptance-ac, acceptance-dc-3kv and acceptance-dc-1500v have the "

@@ -205,7 +205,7 @@ LONGEST_HOLDER_NAME = 120
 """Largest number of characters of a name from a certificate in a message."""
 
 SIGNING_USAGES = frozenset({"digital_signature", "non_repudiation"})
-"""Key usages of which a certificate for signatures needs one (RFC 5280, section 4.2.1.3)."""
+"""Key usages: a certificate for signatures needs one of them (RFC 5280, section 4.2.1.3)."""
 
 
 OTHER_PURPOSES = frozenset({"server_auth", "code_signing", "time_stamping", "ocsp_signing"})

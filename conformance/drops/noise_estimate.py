@@ -26,7 +26,7 @@ NOISE_SECTION, NOISE_MARGIN = 2 * np.pi * 0.7, 2 * np.pi * 0.15
 FIRST_UPDATES, NEXT_UPDATES, LAST_UPDATES = 6, 4, 8
 """Numbers of updates of the variance components: first estimate, each round of the search, last estimate."""
 COMMON_SCALES = (1.0, 0.3, 0.1, 0.03)
-"""Factors of all powers, of which the most likely is taken: the updates of single powers approach 0 slowly [-]."""
+"""Factors of all powers, to choose the most likely: the updates of single powers approach 0 slowly [-]."""
 SEARCH_ROUNDS, EQUAL = 6, 0.1
 """Largest number of rounds of the search, and the share of a decay rate below which a pole no longer moves."""
 LEAST_REST_RATIO, SIGNIFICANT = 1.4, 5.0

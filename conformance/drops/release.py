@@ -74,7 +74,7 @@ def find_release(signals: RealArray, rate: float, nominal: float | None, name: s
 
 
 def _find_onset(beyond: NDArray[np.bool_], rest_end: int, rate: float) -> float | None:
-    """First of five samples of a channel of which three stand out of its noise, in the time of the record [s]."""
+    """First of five samples of a channel if three of them exceed its noise, in the time of the record [s]."""
     sustained = np.flatnonzero(np.convolve(beyond, np.ones(5), mode="valid") >= 3)
     if not sustained.size:
         return None

@@ -32,7 +32,7 @@ LEAST_RATE = 1e-6
 LONGEST_START, LEAST_START = 0.25, 0.002
 """Largest start of a clock that the phases of the modes show, and the smallest that counts [s]."""
 MERGED_STEPS = 4
-"""Largest number of steps of the refinement of poles of which near ones are merged."""
+"""Largest number of steps of the refinement of poles after near ones are merged."""
 TAPS, SMOOTH = 32, 8.0
 """Number of samples and shape (Kaiser) of the interpolation between samples."""
 

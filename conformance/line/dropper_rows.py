@@ -53,7 +53,9 @@ def group_by_span(rows: list[TypedRow], spans: int, where: str, problems: list[I
                     InputError(
                         row.places.get(key, row.place),
                         f"{key} is missing",
-                        "Give it." if key == "x_m" else f"Other droppers of span {number} have it: give it for all.",
+                        "Give the position."
+                        if key == "x_m"
+                        else f"Other droppers of span {number} have it: give it for all.",
                     )
                     for row in missing
                 )

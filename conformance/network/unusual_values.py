@@ -1,4 +1,4 @@
-"""Unusual values: a section beside the others of its track, and a passage beside the others of its section.
+"""Unusual values: a section compared with the others of its track, a passage with the others of its section.
 
 A section that differs in all passages points to the line, such as a wrong tension. A passage that differs points to
 the measurement, such as a zero that drifts.
@@ -16,7 +16,7 @@ COMPARED = ("mean_force_N", "std_force_N")
 """Quantities that are compared."""
 
 FEWEST_SECTIONS, FEWEST_PASSAGES = 8, 3
-"""Smallest number of sections of a track, and of passages over a section, of which one can be unusual."""
+"""Smallest number of sections of a track, or of passages over a section, among which one can be unusual."""
 
 UNUSUAL_DEVIATION = 4.5
 """Smallest deviation that is listed, in robust standard deviations: seven of a million Gaussian values exceed it."""

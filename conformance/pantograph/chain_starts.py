@@ -33,7 +33,7 @@ START_SEED = 20_150_817
 """Seed of the random starts."""
 
 RANDOM_CHAINS = 200
-"""Random chains of which the best ones are starts."""
+"""Number of random chains; the best ones are starts."""
 
 RANDOM_STARTS = 4
 """Random starts of a fit, for responses whose rational function is not that of a chain."""

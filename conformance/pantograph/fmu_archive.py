@@ -37,7 +37,7 @@ def unpack_fmu(path: Path, folder: Path, digest: str | None) -> None:
     where = f"FMU '{path.name}'"
     with open_file(path, where, LARGEST_ARCHIVE) as file, _refuse_damage(where):
         if digest not in (None, found := hashlib.file_digest(file, "sha256").hexdigest()):
-            raise InputError(where, f"has the SHA-256 {found}", "The file was changed after it was named.")
+            raise InputError(where, f"has the SHA-256 {found}", "The file has changed since its digest was stated.")
         size = file.tell()
         file.seek(0)
         with zipfile.ZipFile(file) as archive:

@@ -263,7 +263,7 @@ class PantographFile(InputTable):
     def _law_fits_the_model(self) -> Problems:
         if isinstance(self.force_law, AppliedForceLaw):
             if self.transfer_function is not None:
-                yield validation_problem("force_law", "applied forces of a transfer function", "Give a mean force.")
+                yield validation_problem("force_law", "has applied forces on a transfer function", "Give a mean force.")
                 return
             yield from self._find_wrong_point("force_law.aerodynamic_force.on", self.force_law.aerodynamic_force.on)
 

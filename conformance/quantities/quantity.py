@@ -85,5 +85,5 @@ class LineQuantity(Quantity):
     compute: Callable[[LineSignals], float]
     """Function of the signals of the line."""
     support_values: Callable[[LineSignals], RealArray]
-    """Values at the supports, (k,), of which the quantity is the largest."""
+    """Values at the supports, (k,); the quantity is the largest."""
     scope: Literal["line"] = "line"

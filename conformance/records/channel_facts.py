@@ -101,7 +101,7 @@ def _list_remarks(numbers: RealArray, smallest: float, largest: float) -> Iterat
 
 
 def _describe_held(numbers: RealArray, held: float) -> str:
-    """Remark on a channel of which a share of the samples repeats the one before."""
+    """Remark on a channel if many of its samples repeat the preceding one."""
     if held < SELDOM_SHARE:
         return f"{100 * held:.0f} % of the samples repeat the one before: recorded at a lower rate?"
     values = np.unique(numbers)

@@ -28,7 +28,7 @@ OUTPUT_COLUMN = "fmu "
 """Prefix of the column of an output of an FMU, which is not a channel; its name is `fmu 1: NAME`."""
 
 FORCE_CHANNELS = ("force", *STRIP_CHANNELS)
-"""Contact forces, of which the first is the sum of the others if there are strips."""
+"""Contact forces: the total, then those of the strips if there are strips."""
 
 STRIP_TOLERANCE_N = 0.1
 """Largest difference of the contact force from the sum of its strips: rounding of three channels [N]."""

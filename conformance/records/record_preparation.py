@@ -149,7 +149,7 @@ def prepare_record(
         )
     section = analysis_section(sidecar, position)
     if not section[0] < section[1]:
-        raise RecordInvalid("position", "the pantographs share no track: there is no analysis section")
+        raise RecordInvalid("position", "no part of the track is common to all pantographs")
     settings = _Settings(rate, section, low_pass, sidecar.low_passed_Hz, steady)
     pantographs = {}
     for row in range(samples.force.shape[0]):

@@ -26,7 +26,7 @@ class TrackSection(ResultsPart):
     """Name of a tension section; empty for a stretch between two kilometres."""
     from_km: FiniteNumber
     to_km: FiniteNumber
-    """Ends, of which the first has the lower kilometre."""
+    """Ends; the first has the lower kilometre."""
 
 
 class SectionPassage(ResultsPart):
@@ -150,7 +150,7 @@ class MisplacedRun(ResultsPart):
 
 
 class UnusualValue(ResultsPart):
-    """Value of a section beside the others of its track, or of a passage beside the others of its section."""
+    """Value of a section that differs from the others of its track, or of a passage from those of its section."""
 
     section: TrackSection
     speed_km_h: tuple[FiniteNumber, FiniteNumber] | None

@@ -43,7 +43,7 @@ class NeighbouringLines:
 
 @dataclass(frozen=True)
 class ReducedLine:
-    """Matrices of a line in a span of s vectors, of which the first are its modes; derivatives by p properties."""
+    """Matrices of a line in a span of s vectors, its modes first; derivatives by p properties."""
 
     vectors: Array
     """Mass-normalised vectors of the free unknowns, (s, unknowns)."""

@@ -78,7 +78,7 @@ def pantograph_fit_command(
     if pole_pairs is not None:
         if masses is not None or fix or bending_modes:
             hint = "Leave out --masses, --fix and --bending-modes."
-            raise InputError("--pole-pairs", "given beside the values of a chain", hint)
+            raise InputError("--pole-pairs", "is given together with options of a chain", hint)
         with follow_steps("fitting"):
             transfer = fit_transfer_function(join_responses(records, _parse_band(band)), pole_pairs)
             tables, comparison = build_transfer_pantograph(records, transfer, title, contact_stiffness)
@@ -129,7 +129,7 @@ def _parse_fixed(texts: list[str], masses: int | None) -> RealArray | None:
     if not texts:
         return None
     if masses is None:
-        raise InputError("--fix", "given without a number of masses", "Give --masses as well.")
+        raise InputError("--fix", "is given without a number of masses", "Give --masses as well.")
     fixed = np.full((3, masses), np.nan)
     names = {name_parameter(key, n + 1): (row, n) for row, key in enumerate(CHAIN_KEYS) for n in range(masses)}
     counts = Counter(text.split("=", 1)[0] for text in texts)

@@ -89,7 +89,7 @@ def _view_drops(case: Case, out: Path) -> CommandOutput:
             progress.finish_task()
     shown = [scene for scene in scenes if scene is not None]
     if not shown:
-        raise InputError(f"case '{case.id}'", "has no drop with a moving picture", "Demand no kernel of your own.")
+        raise InputError(f"case '{case.id}'", "has no drop with a moving picture", "Leave out --kernel.")
     write_report(build_drop_view(case.file.title, shown), out)
     facts = {"cases": [case.id], "moving": len(shown)}
     return CommandOutput(escape_text(count_noun(len(shown), "mass drop")), facts, files=(out,))

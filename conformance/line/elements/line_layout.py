@@ -109,7 +109,7 @@ class SpanPositions:
         return self.span_limits[first - 1], self.span_limits[last]
 
     def spans_of_section(self, start: float, end: float) -> tuple[int, int]:
-        """Numbers of the first and the last span of which a section has a part, from 1; its ends are positions [m]."""
+        """Numbers of the first and the last span that a section touches, from 1; its ends are positions [m]."""
         inner = self.span_limits[1:-1]
         return bisect_right(inner, start) + 1, bisect_left(inner, end) + 1
 

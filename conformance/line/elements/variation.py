@@ -55,7 +55,7 @@ class WireVariation(InputTable):
             for key in ("axial_stiffness_EA_N", "expansion_coefficient_1_K"):
                 if getattr(self, key) is None:
                     yield validation_problem(
-                        key, "missing for a wire with rigid anchors", "Give it, or set ends = 'weight'."
+                        key, "missing for a wire with rigid anchors", "Give the value, or set ends = 'weight'."
                     )
 
 

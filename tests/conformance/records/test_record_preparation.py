@@ -59,7 +59,7 @@ def test_simulated_record_is_unchanged_and_pantographs_share_their_track() -> No
     # After 100 m the second pantograph has just reached the start of the first: the section has no length.
     time = np.arange(129) / 64
     force = np.full((2, 129), 120.0)
-    with pytest.raises(RecordInvalid, match="the pantographs share no track"):
+    with pytest.raises(RecordInvalid, match="no part of the track is common to all"):
         ready(RecordSamples(force=force, time=time), speed_km_h=180.0, pantographs=2, spacing_m=[100.0])
 
 
