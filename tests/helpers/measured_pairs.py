@@ -1,6 +1,7 @@
 """Line test as it is measured: force on the train at 1 kHz, uplift at the masts at 200 Hz by a clock of their own."""
 
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -63,10 +64,8 @@ class MeasuredPair:
     def write(self, folder: Path, join: str, further: str = "") -> Path:
         """Write both files with German headers and decimal commas, and their sidecar."""
         supports = range(1, len(self.supports) + 1)
-        forces = [f"Kraft {n} [N]" for n in range(1, self.pantographs + 1)]
-        uplifts = [f"Anhub Mast {n} [mm]" for n in supports]
-        write_german(folder / "zug.csv", ["Zeit [s]", "Weg [m]", *forces], self.train())
-        write_german(folder / "mast.csv", ["Uhrzeit [s]", *uplifts], self.masts())
+        for name, text in zip(("zug.csv", "mast.csv"), format_files(self), strict=True):
+            (folder / name).write_text(text, encoding="cp1252", newline="\n")
         spacing = f"spacing_m = [{SPACING}]\n" if self.pantographs == 2 else ""
         lines = [f'force_{n}_N = {{ column = "Kraft {n} [N]" }}' for n in range(1, self.pantographs + 1)]
         masts = [f'uplift_{n}_m = {{ column = "Anhub Mast {n} [mm]" }}' for n in supports]
@@ -106,10 +105,24 @@ time_s = {{ column = "Uhrzeit [s]" }}
         return sidecar
 
 
-def write_german(path: Path, names: list[str], rows: Array) -> None:
-    """Table with semicolons and decimal commas."""
+def format_german(names: list[str], rows: Array) -> str:
+    """Text of a table with semicolons and decimal commas."""
     lines = [";".join(f"{value:.5f}" for value in row).replace(".", ",") for row in rows]
-    path.write_text("\n".join([";".join(names), *lines]) + "\n", encoding="cp1252", newline="\n")
+    return "\n".join([";".join(names), *lines]) + "\n"
+
+
+@cache
+def format_files(pair: MeasuredPair) -> tuple[str, str]:
+    """Texts of the tables of the train and of the masts."""
+    forces = [f"Kraft {n} [N]" for n in range(1, pair.pantographs + 1)]
+    uplifts = [f"Anhub Mast {n} [mm]" for n in range(1, len(pair.supports) + 1)]
+    train = format_german(["Zeit [s]", "Weg [m]", *forces], pair.train())
+    return train, format_german(["Uhrzeit [s]", *uplifts], pair.masts())
+
+
+def write_german(path: Path, names: list[str], rows: Array) -> None:
+    """Write a table with semicolons and decimal commas."""
+    path.write_text(format_german(names, rows), encoding="cp1252", newline="\n")
 
 
 def delayed(pair: MeasuredPair, seconds: float) -> MeasuredPair:

@@ -15,6 +15,8 @@ from verification.formulations.exact_forces import (
 from verification.formulations.exact_line import Array, Bars, ExactLine, Wires, no_bars, no_springs, no_strings
 from verification.formulations.exact_passage import ExactMotion, advance, no_pantograph, relax
 
+pytestmark = pytest.mark.thorough  # numba compiles the model, which no other code uses
+
 GRAVITY = 9.81
 SPAN, TENSION, MASS, AXIAL_STIFFNESS, BENDING_STIFFNESS = 50.0, 16e3, 1.08, 13.8e6, 131.7
 

@@ -258,7 +258,6 @@ def test_line_as_built_agrees_with_the_reference_simulator() -> None:
         assert value == pytest.approx(reference[key], rel=0.03), key
 
 
-@pytest.mark.thorough
 def test_2002_model_agrees_with_the_reference_simulator() -> None:
     """Spacing 0.25 m and elements of 0.5 m agree within 2 % in every band; the page compares finer meshes."""
     reference_case = case("en50318-2002/250")

@@ -156,17 +156,25 @@ def measured_line(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "cases"
 
 
+OPTIONS = ("--verdicts", "criteria", "--trust", "provisional", "--formats", "json,html,md")
+
+
+@pytest.fixture(scope="module")
+def graded(measured_line: Path) -> Path:
+    """Report of the case on the updated line."""
+    pantocheck("run", "own/a", "--cases", measured_line, "--out", measured_line.parent / "run", *OPTIONS)
+    return measured_line.parent / "run"
+
+
 def test_certificate_of_an_updated_line_prints_its_covariance_at_both_pantographs(
-    measured_line: Path, tmp_path: Path
+    measured_line: Path, graded: Path, tmp_path: Path
 ) -> None:
     """Printed half-widths are those of the components, with two digits; without [tolerance] there is one alone."""
-    options = ("--verdicts", "criteria", "--trust", "provisional", "--formats", "json,html,md")
-    pantocheck("run", "own/a", "--cases", measured_line, "--out", tmp_path / "run", *options)
-    (case,) = json.loads((tmp_path / "run" / "results.json").read_text())["cases"]
+    (case,) = json.loads((graded / "results.json").read_text())["cases"]
     assert case["uncertainty_basis"]["line"].startswith("9 runs on lines one standard deviation away")
     rows = [row for row in case["criteria"] if row["quantity"] == "std_force_N"]
     assert [row["pantograph"] for row in rows] == [1, 2]
-    page = (tmp_path / "run" / "certificate.html").read_text()
+    page = (graded / "certificate.html").read_text()
     for row in rows:
         parts = row["components"]
         assert 0.1 < parts["line"] < 10
@@ -174,23 +182,23 @@ def test_certificate_of_an_updated_line_prints_its_covariance_at_both_pantograph
         numerics = np.sqrt(sum(width**2 for name, width in parts.items() if name != "line"))
         text = f"± {format_value(numerics, 2)} (numerics) ± {format_value(parts['line'], 2)} (line as measured)"
         assert text in page
-        assert text in (tmp_path / "run" / "summary.md").read_text().replace("\\", "")
+        assert text in (graded / "summary.md").read_text().replace("\\", "")
     shutil.copytree(measured_line, tmp_path / "exact")
     edit_toml(tmp_path / "exact" / "line.toml", {"tolerance": None})
-    pantocheck("run", "own/a", "--cases", tmp_path / "exact", "--out", tmp_path / "known", *options)
+    pantocheck("run", "own/a", "--cases", tmp_path / "exact", "--out", tmp_path / "known", *OPTIONS)
     assert "(line as measured)" not in (tmp_path / "known" / "certificate.html").read_text()
 
 
-def test_refined_campaign_contains_the_covariance_of_an_updated_line(measured_line: Path, tmp_path: Path) -> None:
+def test_refined_campaign_contains_the_covariance_of_an_updated_line(
+    measured_line: Path, graded: Path, tmp_path: Path
+) -> None:
     """Width of a run of a campaign is that of the same run alone; draws with the same seed, so to rounding."""
     campaign = {"cases": ["own/a"], "case_folders": [str(measured_line)], "refined": True}
     campaign |= {"vary": [{"key": "speed_km_h", "values": [250.0]}]}
     write_toml(tmp_path / "campaign.toml", campaign)
     result = pantocheck("campaign", tmp_path / "campaign.toml", "--out", tmp_path / "many", "--workers", 1)
     (row,) = csv.DictReader((tmp_path / "many" / "campaign.csv").read_text().splitlines())
-    options = ("--set", "speed_km_h=250.0", "--formats", "json")
-    pantocheck("run", "own/a", "--cases", measured_line, "--out", tmp_path / "run", *options)
-    (case,) = json.loads((tmp_path / "run" / "results.json").read_text())["cases"]
+    (case,) = json.loads((graded / "results.json").read_text())["cases"]
     for number in ("1", "2"):
         by_line = case["uncertainty_components"][number]["std_force_N"]["line"]
         width = float(row[f"{number}.std_force_N.uncertainty"])

@@ -180,7 +180,7 @@ def test_signed_copy_shows_the_same_pages(passing_certificate: Path, signers: Si
     assert before.metadata == after.metadata
 
 
-@pytest.mark.parametrize("name", ["certificate.html", "results.json"])
+@pytest.mark.parametrize("name", [pytest.param("certificate.html", marks=pytest.mark.thorough), "results.json"])
 def test_signature_beside_a_document(
     accepted_wave: Results, signers: Signers, roots_file: Path, tmp_path: Path, name: str
 ) -> None:

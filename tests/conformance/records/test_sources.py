@@ -225,17 +225,19 @@ REMOVALS: dict[str, Callable[[Path], None]] = {
 }
 
 
-@pytest.mark.parametrize("name", REMOVALS)
 @pytest.mark.parametrize("join", [PASSAGE, STATED])
-def test_removing_information_never_makes_a_pass(name: str, join: str, tmp_path: Path) -> None:
+def test_removing_information_never_makes_a_pass(join: str, tmp_path: Path) -> None:
     """The uplift of the last mast exceeds its space by 0.01 %."""
-    pair = MeasuredPair()
-    sidecar = pair.write(tmp_path, join)
-    edit_toml(sidecar, {"line.uplift_space_mm": truth(pair) / 1.0001})
-    assert read_results(sidecar)["verdict"] == "fail"
-    REMOVALS[name](tmp_path)
-    report = tmp_path / "removed"
-    assert pantocheck("assess", sidecar, "--profile", "acceptance-ac", "--out", report, "--formats", "json").exit_code
+    pair, exit_codes = MeasuredPair(), {}
+    space = {"line.uplift_space_mm": truth(pair) / 1.0001}
+    options = ("--profile", "acceptance-ac", "--formats", "json", "--out", tmp_path / "removed")
+    for name, remove in REMOVALS.items():
+        sidecar = edit_toml(pair.write(tmp_path, join), space)
+        if not exit_codes:
+            assert read_results(sidecar)["verdict"] == "fail"
+        remove(tmp_path)
+        exit_codes[name] = pantocheck("assess", sidecar, *options).exit_code
+    assert [name for name, exit_code in exit_codes.items() if exit_code == 0] == []
 
 
 def test_gap_beside_the_passage_hides_no_uplift(tmp_path: Path) -> None:
@@ -368,11 +370,17 @@ def test_inverted_mast_confirms_no_clock(tmp_path: Path) -> None:
     assert "the uplift at 300 m falls by" in result["skipped"]["0"][UPLIFT]
 
 
-@pytest.mark.parametrize("step", [0.1, 0.5, 1.0, 2.0])
-@pytest.mark.parametrize("rate", [200.0, 1000.0, 5000.0])
+@pytest.mark.parametrize(
+    ("step", "rate"),
+    [
+        pytest.param(step, rate, marks=pytest.mark.thorough if (i + k) % 2 else ())
+        for i, step in enumerate((0.1, 0.5, 1.0, 2.0))
+        for k, rate in enumerate((200.0, 1000.0, 5000.0))
+    ],
+)
 def test_rounded_uplift_is_neither_overloaded_nor_off_zero(step: float, rate: float, tmp_path: Path) -> None:
     """A sensor in whole steps holds its largest value at a smooth maximum, and 1 mm are within the zero."""
-    pair = MeasuredPair(noise=0.0, rate=rate)
+    pair = MeasuredPair(noise=0.0, rate=rate, times=(-1.0, 11.0))
     sidecar = pair.write(tmp_path, STATED)
     for smooth in (False, True):
         place = SPEED * np.arange(*pair.times, 1 / rate) - 360

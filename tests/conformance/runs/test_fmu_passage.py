@@ -32,7 +32,11 @@ def run(case: Case) -> CaseResult:
 
 @pytest.mark.parametrize(
     ("version", "has_state", "interface"),
-    [(2, True, "co-simulation"), (3, True, "model-exchange"), (3, False, "co-simulation")],
+    [
+        (3, True, "model-exchange"),
+        pytest.param(2, True, "co-simulation", marks=pytest.mark.thorough),
+        pytest.param(3, False, "co-simulation", marks=pytest.mark.thorough),
+    ],
 )
 def test_two_chains_as_fmus_give_the_quantities_of_the_built_in_chains(
     write_fmu: WriteFmu, version: int, has_state: bool, interface: str

@@ -71,11 +71,11 @@ def test_hertz_contact_obeys_its_law_at_the_end_of_every_step() -> None:
 
 def test_stiff_springs_tend_to_the_constraint() -> None:
     """Bands below 50 Hz: 1e6 N/m within 4 %, 1e8 N/m within 0.5 %, with elements of 0.25 m."""
-    line = discretise(simple_line(6, 50.0, (5.0, 15.0, 25.0, 35.0, 45.0), DAMPED), 0.25)
+    line = discretise(simple_line(4, 50.0, (5.0, 15.0, 25.0, 35.0, 45.0), DAMPED), 0.25)
 
     def run(stiffness: float) -> History:
         head = replace(PANTOGRAPH_2002, contact_stiffness=stiffness)
-        return simulate_passage(line, Passage((head,), (60.0,), 70.0, 2.4, 5e-4))
+        return simulate_passage(line, Passage((head,), (40.0,), 70.0, 1.6, 5e-4))
 
     constraint = band_values(run(np.inf))
     for stiffness, tolerance in ((1e6, 0.04), (1e8, 0.005)):

@@ -191,7 +191,14 @@ def test_both_cores_compute_the_same(
 
 
 @needs_compiler
-@pytest.mark.parametrize("options", [("-DWIDEST=2",), ("-O1",), ("-march=native", "-funroll-loops")])
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("-DWIDEST=2",),
+        pytest.param(("-O1",), marks=pytest.mark.thorough),
+        pytest.param(("-march=native", "-funroll-loops"), marks=pytest.mark.thorough),
+    ],
+)
 def test_bits_do_not_depend_on_vector_instructions_or_optimisation(
     options: tuple[str, ...], core: Core, use_core: Callable[[Core | str], None], tmp_path: Path
 ) -> None:
