@@ -55,6 +55,7 @@ PROGRAMS = {
     "calibration-mesh": Program("tables.uncertainty_coverage", ("calibration-mesh",), "discretisation"),
     "coverage-simulated": Program("tables.coverage_simulated", ("coverage-simulated",)),
     "coverage": Program("tables.coverage", ("coverage", "coverage-worst")),
+    "parquet-queries": Program("tables.parquet_queries", ("parquet-queries",)),
     "clock-findings": Program("tables.clock_findings", ("clock-findings",)),
     "copy-thresholds": Program("tables.copy_thresholds", ("copy-thresholds",)),
     "exact-model": Program("formulations.exact_model", ("exact-plane", "exact-stagger", "exact-change")),

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 import time
@@ -79,6 +80,22 @@ def test_an_assessment_killed_at_random_times_is_repeated(runs: Path, tmp_path: 
     (out / ".forces-killed" / "0.npy").touch()
     assert {name: text for name, text in assess(runs, out).items() if not name.startswith(".")} == whole
     assert not list(out.glob(".forces-*"))
+
+
+def test_queries_of_the_page_read_a_collection_and_its_passages(runs: Path, tmp_path: Path) -> None:
+    """A sine of 28 N has a sigma of 19.8 N, and noise of 3 N makes it 20.0 N; the dip on two days adds 1 N."""
+    duckdb = pytest.importorskip("duckdb", reason="duckdb is not installed")
+    assess(runs, tmp_path / "net")
+    page = (Path(__file__).parents[4] / "docs" / "network.md").read_text(encoding="utf-8")
+    samples, passages = (
+        duckdb.sql(query.replace("'runs/", f"'{runs}/").replace("'net/", f"'{tmp_path}/net/")).fetchall()
+        for query in re.findall(r"```sql\n(.*?)```", page, re.DOTALL)
+    )
+    assert [str(row[2]) for row in samples] == [f"2026-05-0{day}" for day in (1, 2, 3, 4)]
+    assert [round(1000 * row[5]) for row in samples] == [20, 20, 21, 21]
+    assert [row[4] for row in samples] == pytest.approx([0.1] * 4, abs=0.0006)
+    assert sorted(row[2] for row in passages) == [10.0, 10.5, 11.0]
+    assert {row[6] for row in passages} == {4}
 
 
 @pytest.mark.thorough
