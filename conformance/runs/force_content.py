@@ -235,7 +235,7 @@ def _compare_uplifts(case: Case, signals: RecordSignals, pair: tuple[int, int], 
     a support too; otherwise the difference is infinite. It is NaN if the uplift is not recorded there.
     """
     record = signals.record
-    inside = zip(signals.line.supports, signals.line.uplift, strict=True)
+    inside = zip(signals.delivered_line.supports, signals.delivered_line.uplift, strict=True)
     position, other = (record.position[number - 1] for number in pair)
     recorded, channels = record.support_position, record.support_uplift
     assert recorded is not None

@@ -161,7 +161,7 @@ LIFTS = 2.0
 
 def _check_mean_force(case: Case, signals: RecordSignals) -> Finding:
     try:
-        uplift = signals.line.largest_uplift
+        uplift = signals.delivered_line.largest_uplift
         parts = zip(signals.pantographs.items(), case.pantographs, case.lift_forces, strict=True)
         return worst_finding(
             _compare(number, pantograph, file, lift, uplift) for (number, pantograph), file, lift in parts
