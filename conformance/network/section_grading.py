@@ -16,9 +16,11 @@ from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.network.run_collection import StoredRun
 from pantocheck.conformance.quantities.evaluation import LINE, ValuesByOwner
+from pantocheck.conformance.quantities.line_signals import supports_inside
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.quantities.uncertainty import Uncertainty
 from pantocheck.conformance.records.record import RecordInvalid
+from pantocheck.conformance.records.record_preparation import PreparedRecord
 from pantocheck.conformance.records.record_reading import read_samples
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples
@@ -112,11 +114,21 @@ def grade_run(
             km = force = np.empty(0)
             if subject is not None and subject.prepared is not None:
                 passage = _judge(passage, [c for c in criteria if c.pantograph in (LINE, number)], profile, values)
+                passage = passage.model_copy(update={"clocks": "; ".join(_list_clocks(subject.prepared))})
                 signals = subject.prepared.pantographs[number]
                 with suppress(QuantityUnavailable):
                     force, place = signals.graded, signals.position[signals.inside]
                     km = track.zero_km + track.direction * place / 1000
             yield GradedPassage(passage, km, force, values)
+
+
+def _list_clocks(prepared: PreparedRecord) -> Iterator[str]:
+    """Names of further sources with the state or the uncertainty of their clocks."""
+    for part in prepared.alignments:
+        if supports_inside(part.source.supports, prepared.section).any():
+            yield f"{part.source.name} {part.state}"
+    for name, _, clock in prepared.place_clocks:
+        yield f"{name} within {clock.uncertainty:.2g} s"
 
 
 def _is_regular(time: RealArray) -> bool:

@@ -33,7 +33,10 @@ NETWORK_SCOPE = (
     "from Student's t over the passages; its coverage is not measured."
 )
 
-NETWORK_COLUMNS = ("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N", "contact_loss_pct")
+NETWORK_COLUMNS = (
+    *("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N", "contact_loss_pct"),
+    "max_uplift_at_support_mm",
+)
 """Quantities in the tables."""
 
 VALUES_IN_TABLES = "The values are in the tables."
@@ -91,6 +94,7 @@ def build_run_page(run: str, passages: Sequence[SectionPassage]) -> doc.Document
         doc.Column("Speed [km/h]", number=True): lambda x: format_value(x.speed_km_h),
         doc.Column("Verdict"): lambda x: doc.VerdictMark(x.verdict),
         **{_head(name): lambda x, name=name: format_value(x.values.get(name)) for name in _list_known(passages)},
+        **_list_clock_column(passages),
         doc.Column("Reason", share=1): lambda x: x.reason,
     }
     back = doc.Paragraph((doc.PageLink("All lines", "../index.html"),))
@@ -139,6 +143,7 @@ def _tabulate_groups(groups: Sequence[SectionGroup]) -> doc.Table:
         **{column: call for column, call in classes.items() if any(map(call, shown))},
         doc.Column("Verdict"): lambda x: doc.VerdictMark(x.verdict),
         **{_head(name): lambda x, name=name: _format_repeated(x, name) for name in _list_known(shown)},
+        **_list_clock_column(shown),
         doc.Column("Reason", share=1): lambda x: x.reason,
         doc.Column("Run"): lambda x: _link_run(x.run) if x.run else "",
     }
@@ -149,6 +154,11 @@ def _tabulate_groups(groups: Sequence[SectionGroup]) -> doc.Table:
 def _list_known(items: Sequence[SectionGroup | SectionPassage]) -> list[str]:
     """Quantities that one of the groups or passages has."""
     return [name for name in NETWORK_COLUMNS if any(name in item.values for item in items)]
+
+
+def _list_clock_column(items: Sequence[SectionGroup | SectionPassage]) -> dict[doc.Column, object]:
+    """Column of the clocks, if a run has several files."""
+    return {doc.Column("Clocks"): lambda x: x.clocks} if any(item.clocks for item in items) else {}
 
 
 def _name_speed(group: SectionGroup) -> str:

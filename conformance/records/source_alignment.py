@@ -168,7 +168,7 @@ def align_source(source: SourceSamples, train: PlacedTrain) -> Alignment:
     if match < SMALLEST_MATCH:
         shift = next(iter(comparison.list_passages(-np.inf, np.inf)), np.nan)
     if np.isnan(shift):
-        return Alignment(source, source.clock, "unconfirmed", "its pulses fit no passage of this train")
+        return Alignment(source, source.clock, "unconfirmed", _describe_mismatch(source, moments))
     ties = list(_list_ties(source, passages, shift))
     if abs(shift - stated) > tolerance:
         return Alignment(source, source.clock, "contradicted", _describe_error(stated - shift, ties), tuple(ties))
@@ -188,6 +188,16 @@ def align_source(source: SourceSamples, train: PlacedTrain) -> Alignment:
         return Alignment(source, clock, "unconfirmed", "; ".join(inverted), tuple(ties))
     text = f"{len(seen)} of {len(ties)} passages show a pulse, within {1e3 * max(map(abs, residuals)):.2g} ms"
     return Alignment(source, clock, "confirmed", text, tuple(ties))
+
+
+def _describe_mismatch(source: SourceSamples, moments: RealArray) -> str:
+    """Pulses without a passage in words, with the passages, (s, p) [s], that the source holds by a stated clock."""
+    begin, end = source.clock.convert(source.time[[0, -1]])
+    held, total = int(((moments >= begin) & (moments <= end)).sum()), int(np.isfinite(moments).sum())
+    text = "its pulses fit no passage of this train"
+    if source.kind == "passage" or held == total:
+        return f"{text}; it must hold the passage of each pantograph at each of its supports"
+    return f"{text}; by its clock it holds {held} of the {total} passages of the pantographs at its supports"
 
 
 def _list_ties(source: SourceSamples, passages: Passages, shift: float) -> Iterator[Tie]:
@@ -264,6 +274,8 @@ def join_uplift(
 def list_short_ends(alignments: Sequence[Alignment], train: PlacedTrain, section: tuple[float, float]) -> Iterator[str]:
     """Warnings of sources that cover a support of the section by their clock, but not at either end of its interval."""
     for part in alignments:
+        if part.source.kind == "passage" and part.state != "confirmed":
+            continue  # the clock is not known
         source, width = part.source, part.clock.uncertainty
         time = part.clock.convert(source.time[[0, -1]])
         gap = GAP_STEPS * float(np.median(np.diff(source.time)))

@@ -47,6 +47,8 @@ class SectionPassage(ResultsPart):
     """Reasons of criteria that do not pass; empty if all do."""
     values: dict[str, FiniteNumber]
     """Quantities in the units of their names."""
+    clocks: str = ""
+    """Further sources of the run with the state of their clocks; empty without one at a support of the section."""
 
 
 class RepeatedValue(ResultsPart):
@@ -86,6 +88,8 @@ class SectionGroup(ResultsPart):
     run: str | None
     """Run of the worst passage, or of the first of several; null: no passage."""
     values: dict[str, RepeatedValue]
+    clocks: str = ""
+    """States of the clocks of further sources in these passages, each once; empty without one."""
 
 
 class KnownPlace(ResultsPart):

@@ -71,6 +71,10 @@ def describe_command(
     )
     if sidecar is not None and sidecar.exists():
         raise InputError(f"file '{sidecar}'", "exists already", "Give another name; no file is overwritten.")
+    for file in files:
+        if sidecar is not None and file.absolute().parent.resolve() != sidecar.absolute().parent.resolve():
+            hint = "Write the sidecar beside its files; copy files of other folders there first."
+            raise InputError(f"file '{file}'", f"is not in the folder of the sidecar '{sidecar}'", hint)
     parts = [part for file in files for part in _describe_parts(file, layout)]
     drop = kind == "mass-drop" or (kind is None and any(part.moves for part in parts))
     if drop and len(files) > 1:

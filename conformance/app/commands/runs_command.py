@@ -145,7 +145,7 @@ def runs_assess_command(
         open_workers(jobs, scheduler) as map_runs,
     ):
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*PASSAGE_COLUMNS, "speed_km_h", "whole", "verdict", "reason", *NETWORK_QUANTITIES])
+        writer.writerow([*PASSAGE_COLUMNS, "speed_km_h", "whole", "verdict", "reason", "clocks", *NETWORK_QUANTITIES])
         for track, graded in assess_tracks(runs, task, map_runs):
             tracks.append(track)
             for run, items in graded:
@@ -181,4 +181,5 @@ def _list_cells(passage: SectionPassage) -> list[object]:
     values = [passage.values.get(name, "") for name in NETWORK_QUANTITIES]
     speed = "" if passage.speed_km_h is None else passage.speed_km_h
     run = (passage.run, passage.date, passage.direction, passage.pantograph)
-    return [section.line, section.track, *ends, *run, speed, passage.whole, passage.verdict, passage.reason, *values]
+    verdict = (passage.whole, passage.verdict, passage.reason, passage.clocks)
+    return [section.line, section.track, *ends, *run, speed, *verdict, *values]

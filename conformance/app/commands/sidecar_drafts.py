@@ -58,7 +58,8 @@ def draft_record_sidecar(parts: Sequence[DescribedTable], layout: TextSettings) 
     if forces > 1:
         spacing = ", ".join(["200.0"] * (forces - 1))
         lines.append(f"# spacing_m = [{spacing}]".ljust(34) + f"# {TO_DO} distances between successive pantographs")
-    lines += _list_section_lines("support", "the supports with an uplift", guesses)
+    mark = f"{TO_DO} " if any("uplift" in guess_channels(part.facts) for part in parts) else ""
+    lines += _list_section_lines("support", f"{mark}the supports with an uplift", guesses)
     lines += _list_layout(layout)
     lines += ["", "[line]", "# span_m = 65.0                   # longest span, needed for the uplift"]
     lines += ["# wave_speed_m_s = 120.0          # sqrt(tension / mass per length) of the contact wire"]

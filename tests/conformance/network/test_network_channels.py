@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from helpers.measured_pairs import STATED, MeasuredPair, delayed, write_german
@@ -9,6 +10,9 @@ from pantocheck.conformance.cases.profile_file import Profile, load_profile
 from pantocheck.conformance.network.network_assessment import AssessmentTask, assess_network
 from pantocheck.conformance.network.run_collection import import_files, list_refused, list_runs, open_collection
 from pantocheck.conformance.network.section_grading import GradedPassage, grade_run
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.network_page import build_run_page
+from pantocheck.conformance.pages.words import quantity_label
 from pantocheck.conformance.results.network_format import NetworkResults, TrackSection
 
 pytest.importorskip("pyarrow")
@@ -47,12 +51,15 @@ def write_profile(folder: Path, rule: str, verification: str = "shown") -> Profi
     return load_profile(str(path))
 
 
-def collect(pair: MeasuredPair, folder: Path, further: str = "", raised_N: float = 0.0) -> Path:
+def collect(pair: MeasuredPair, folder: Path, further: str = "", raised_N: float = 0.0, zero_mm: float = 0.0) -> Path:
     folder.mkdir(exist_ok=True)
     sidecar = pair.write(folder, STATED)
     rows = pair.train()
     rows[:, 3] += raised_N
     write_german(folder / "zug.csv", ["Zeit [s]", "Weg [m]", "Kraft 1 [N]", "Kraft 2 [N]"], rows)
+    if zero_mm:
+        names = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))]
+        write_german(folder / "mast.csv", names, pair.masts() + np.array([0.0, *[zero_mm] * 3]))
     sidecar.write_text(sidecar.read_text(encoding="utf-8") + PLACE + further, encoding="utf-8")
     with open_collection(folder / "runs"):
         (item,) = import_files([sidecar], folder / "runs", None)
@@ -84,11 +91,24 @@ def test_the_uplift_is_graded_with_its_own_clock(tmp_path: Path) -> None:
     assert graded[0].passage.values["max_uplift_at_support_mm"] == pytest.approx(50.0, abs=3.0)
     wide = write_profile(tmp_path, 'quantity = "max_uplift_at_support_mm", upper = 60.0')
     assert judge(grade(runs, wide)) == [("front", "pass"), ("rear", "pass")] * 2
+    assert [item.passage.clocks for item in graded] == ["source-1.parquet confirmed"] * 4
+    (group, _) = assess(runs, wide, ("section",)).groups
+    assert group.clocks == "source-1.parquet confirmed"
+    page = render_html(build_run_page("x", [item.passage for item in graded]))
+    assert "Clocks" in page
+    assert quantity_label("max_uplift_at_support_mm") in page
     wrong = collect(delayed(MeasuredPair(), 1.0), tmp_path / "b")
     skipped = grade(wrong, wide)
     assert judge(skipped) == [("front", "skip"), ("rear", "skip")] * 2
     assert "mast" in skipped[0].passage.reason or "source-1" in skipped[0].passage.reason
     assert assess(wrong, wide).verdict == "skip"
+
+
+def test_a_faulty_sensor_is_skipped_as_by_assess(tmp_path: Path) -> None:
+    runs = collect(MeasuredPair(), tmp_path / "a", zero_mm=-8.0)
+    graded = grade(runs, write_profile(tmp_path, 'quantity = "max_uplift_at_support_mm", upper = 45.0'))
+    assert judge(graded) == [("front", "skip"), ("rear", "skip")] * 2
+    assert "mm at rest, before the passage, and not 0 within 2 mm" in graded[0].passage.reason
 
 
 def test_a_criterion_of_one_pantograph_is_not_that_of_the_other(tmp_path: Path) -> None:

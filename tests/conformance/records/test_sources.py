@@ -134,7 +134,17 @@ WRONG: dict[str, tuple[MeasuredPair, str, str]] = {
         PASSAGE,
         "its pulses fit no passage of this train",
     ),
-    "no uplift": (MeasuredPair(heights=(0.0, 0.0)), STATED, "its pulses fit no passage of this train"),
+    "no uplift": (MeasuredPair(heights=(0.0, 0.0)), STATED, "it must hold the passage of each pantograph at each of"),
+    "cut before the rear pantograph passes": (
+        MeasuredPair(times=(-4.0, 7.0)),
+        STATED,
+        "fit no passage of this train; by its clock it holds 3 of the 6 passages of the pantographs at its supports",
+    ),
+    "cut, without a time": (
+        MeasuredPair(times=(-4.0, 7.0)),
+        PASSAGE,
+        "it must hold the passage of each pantograph at each of its supports",
+    ),
 }
 
 

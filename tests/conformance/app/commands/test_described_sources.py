@@ -12,7 +12,7 @@ import pyuff
 import scipy.io
 
 from helpers.command_line import pantocheck
-from helpers.measured_pairs import SPACING, MeasuredPair, write_german
+from helpers.measured_pairs import SPACING, STATED, MeasuredPair, write_german
 from pantocheck.conformance.core.uff_table import write_data_sets
 
 COMPLETED = {
@@ -63,6 +63,18 @@ def test_describe_joins_a_train_and_its_masts(order: int, tmp_path: Path) -> Non
     assert read_value(tmp_path, *files) == pytest.approx(pair.masts()[:, 1:].max(), abs=1e-5)
     text = (tmp_path / "described.toml").read_text(encoding="utf-8")
     assert text.index('file = "zug.csv"') < text.index("[[source]]") < text.index('file = "mast.csv"')
+
+
+def test_file_of_another_folder_than_the_sidecar_is_refused(tmp_path: Path) -> None:
+    """`check` takes the names of files in the folder of the sidecar."""
+    MeasuredPair().write(tmp_path, STATED)
+    (tmp_path / "masts").mkdir()
+    (tmp_path / "mast.csv").rename(tmp_path / "masts" / "mast.csv")
+    files = tmp_path / "zug.csv", tmp_path / "masts" / "mast.csv"
+    done = pantocheck("describe", *files, "--sidecar", tmp_path / "described.toml", COLUMNS="400")
+    assert done.exit_code == 2
+    assert "mast.csv': is not in the folder of the sidecar" in done.output
+    assert not (tmp_path / "described.toml").exists()
 
 
 def test_describe_counts_supports_over_all_files(tmp_path: Path) -> None:
