@@ -48,8 +48,8 @@ class RunPair:
 
     place: str
     """Case and inputs in words."""
-    here: dict[str, float]
-    there: dict[str, float]
+    values: dict[str, float]
+    other_values: dict[str, float]
     """Quantities of this campaign and of the other one, by column."""
 
 
@@ -64,11 +64,11 @@ def pair_runs(store: CampaignStore, other: CampaignStore, values: Sequence[Evalu
     systems = [{row.run.system for row in each.rows()} for each in (store, other)]
     with_system = bool(systems[0] & systems[1])
     columns = [value.column for value in values]
-    there = {key: quantities for key, _, quantities in _list_runs(other, with_system, columns)}
+    others = {key: quantities for key, _, quantities in _list_runs(other, with_system, columns)}
     pairs = [
-        RunPair(place, quantities, there[key])
+        RunPair(place, quantities, others[key])
         for key, place, quantities in _list_runs(store, with_system, columns)
-        if key in there
+        if key in others
     ]
     if not pairs:
         hint = "Compare campaigns of the same cases with equal inputs."
@@ -79,9 +79,9 @@ def pair_runs(store: CampaignStore, other: CampaignStore, values: Sequence[Evalu
 def compare_values(pairs: Sequence[RunPair], values: Sequence[EvaluatedValue]) -> Iterator[ValueComparison]:
     """Differences of each value, this campaign minus the other one."""
     for value in values:
-        common = [pair for pair in pairs if value.column in pair.here and value.column in pair.there]
+        common = [pair for pair in pairs if value.column in pair.values and value.column in pair.other_values]
         if common:
-            difference = np.array([pair.here[value.column] - pair.there[value.column] for pair in common])
+            difference = np.array([pair.values[value.column] - pair.other_values[value.column] for pair in common])
             largest = int(np.argmax(np.abs(difference)))
             yield ValueComparison(
                 label=value.title,

@@ -125,7 +125,7 @@ class Check:
     """Name in messages and documents."""
     must_hold: str
     """Condition on the record."""
-    why: str
+    purpose: str
     """Fault that would otherwise go unnoticed."""
     needs: str
     """Channels without which the check is not made."""

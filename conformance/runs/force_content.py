@@ -131,7 +131,7 @@ def _compare_bands(frequency: RealArray, amplitude: RealArray) -> float:
 CONTENT = Check(
     name="content",
     must_hold="at 30-50 Hz, the force has at least 0.08 times the content that kinks of the wire cause",
-    why="force and contact height that pass the same filter still agree with each other",
+    purpose="force and contact height that pass the same filter still agree with each other",
     needs="contact force at 100 samples per second or more",
     run=_check_content,
     measures=(KINK_SHARE,),
@@ -278,7 +278,7 @@ def _judge(pair: tuple[int, int], remainder: float, differences: RealArray) -> F
 COPY = Check(
     name="copy",
     must_hold="pantographs have the same force only in the same part of a span, with the same uplift at the supports",
-    why="force and height of the other pantograph agree with each other",
+    purpose="force and height of the other pantograph agree with each other",
     needs="position, contact force and uplift at supports",
     run=_check_copy,
     measures=(FORCE_REMAINDER, UPLIFT_DIFFERENCE),

@@ -327,7 +327,7 @@ def _find_lag(fit: ResponseFit, longest: int) -> tuple[int, float]:
 DYNAMICS = Check(
     name="dynamics",
     must_hold="the pantograph of the case, driven by the force, moves like the contact height",
-    why="a wrong gain, unit, sign or time of the force shows in the motion",
+    purpose="a wrong gain, unit, sign or time of the force shows in the motion",
     needs="contact force and contact height",
     run=_check_force_dynamics,
     measures=(MISFIT, GAIN_ERROR, LATE_MISFIT, LATE_GAIN_ERROR, ROLLING_MISFIT, ROLLING_GAIN_ERROR),

@@ -192,7 +192,7 @@ def _judge(number: int, measure: Measure, error: float, low_pass: Filter, height
 IMPLIED_FORCE = Check(
     name="implied force",
     must_hold="at every instant, the contact height implies the graded force, up to the cut-off",
-    why="a filter that is not stated, or a clipped peak, changes the extremes of the force, but hardly the motion",
+    purpose="a filter that is not stated, or a clipped peak, changes the extremes of the force, but hardly the motion",
     needs="contact force and contact height, to 0.1 mm",
     run=_check_implied_force,
     measures=(FORCE_ERROR, EXTENDED_FORCE_ERROR, ROLLING_FORCE_ERROR),

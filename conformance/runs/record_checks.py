@@ -68,7 +68,7 @@ def _check_motion(_: Case, signals: RecordSignals) -> Finding:
 COVERAGE = Check(
     name="coverage",
     must_hold="every pantograph crosses the whole analysis section",
-    why="a record that ends early can have plausible statistics",
+    purpose="a record that ends early can have plausible statistics",
     needs="position",
     run=_check_coverage,
     causes=("holds", "does not hold"),
@@ -77,7 +77,7 @@ COVERAGE = Check(
 MOTION = Check(
     name="motion",
     must_hold="the positions advance with the speed of the train",
-    why="a wrong sampling rate or unit of position shifts the analysis section",
+    purpose="a wrong sampling rate or unit of position shifts the analysis section",
     needs="position, time and speed",
     run=_check_motion,
     measures=(SPEED_ERROR,),
@@ -134,7 +134,7 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding:
 ROLL_OFF = Check(
     name="roll-off",
     must_hold="above the cut-off, a filtered force falls off like the stated filter",
-    why="a weaker filter, or none, increases the standard deviation by a few percent",
+    purpose="a weaker filter, or none, increases the standard deviation by a few percent",
     needs="filtered contact force",
     run=_check_roll_off,
     measures=(CONTENT_ABOVE,),
@@ -211,7 +211,7 @@ def _rigid_coefficients(file: PantographFile) -> tuple[float, float, float]:
 MEAN_FORCE = Check(
     name="mean force",
     must_hold="the mean contact force balances the uplift force, up to the base spring and the momentum",
-    why="a constant added to the force changes its extremes, but neither its variation nor the motion",
+    purpose="a constant added to the force changes its extremes, but neither its variation nor the motion",
     needs="contact force, contact height and uplift at supports",
     run=_check_mean_force,
     measures=(FORCE_DIFFERENCE,),

@@ -189,7 +189,7 @@ def _compare_gain(passages: dict[int, _Passages], step: float) -> Finding | None
 COINCIDENCE = Check(
     name="coincidence",
     must_hold="in contact, contact height and uplift at the passage of each support agree up to one constant",
-    why="an uplift that is frozen, scaled, of another support or of another run still shows a kink somewhere",
+    purpose="an uplift that is frozen, scaled, of another support or of another run still shows a kink somewhere",
     needs="position, contact force, contact height and uplift at supports, to 0.1 mm",
     run=_check_coincidence,
     measures=(HOLD, DEVIATION, DATUM, UPLIFT_GAIN),

@@ -189,7 +189,7 @@ SUPPORT_PASSING = Check(
     name="support passing",
     must_hold=f"within {PASSING_TOLERANCE_M:g} m of each support, the pantograph bends the wire there or coincides "
     "with it",
-    why="shifted positions hardly change the statistics",
+    purpose="shifted positions hardly change the statistics",
     needs="position, contact force and uplift at supports",
     run=_check_support_passing,
     measures=(KINK_SHIFT, SCATTER),

@@ -8,7 +8,7 @@ from site_pages.markdown_table import build_markdown_table, escape_text
 def build_check_table() -> str:
     """Condition, numbers with their thresholds, needs and reason of every check."""
     rows = [
-        (check.name, *map(escape_text, (check.must_hold, _list_thresholds(check), check.needs, check.why)))
+        (check.name, *map(escape_text, (check.must_hold, _list_thresholds(check), check.needs, check.purpose)))
         for check in RECORD_CHECKS
     ]
     return build_markdown_table(("check", "condition", "thresholds", "needs", "reason"), rows) + "\n"

@@ -106,7 +106,7 @@ MESSAGES = {name for name in dir(builtins) if name.endswith("Error")} | {
     *("validation_problem", "PackedDamaged", "TooManyEvents", "parse_decision"),
 }
 """Calls whose texts are messages on input, descriptions of keys or names of places."""
-UNSHOWN_KEYWORDS = {"must_hold", "why", "needs", "definition", "source"}
+UNSHOWN_KEYWORDS = {"must_hold", "purpose", "needs", "definition", "source"}
 PART = "\0"
 """Place of a part that is known at run time."""
 
