@@ -18,6 +18,7 @@ from pantocheck.conformance.core.sourced_table import (
     is_absent,
     validation_problem,
 )
+from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.core.trust import LimitTrust
 from pantocheck.conformance.line.library_folder import library_folder
@@ -215,7 +216,8 @@ UNREAD = ("tsi", "50367", "50119")
 
 UNREAD_HINT = (
     "No rule of this document was read in print. acceptance-ac, acceptance-dc-3kv and acceptance-dc-1500v have the "
-    "rules of secondary sources, which name no document; state those of your copy in a .toml file of your own."
+    "rules of secondary sources, which name no document. Write the rules of your copy into a file such as mine.toml, "
+    f"and give --profile mine.toml; {DocumentationPage.RECORDS} shows one."
 )
 
 
