@@ -72,6 +72,9 @@ class StartForces(Protocol):
 FAILED: Verdict = "error"
 """Verdict of a run without a result."""
 
+LINE_KEYS = {"line", "discretisation"}
+"""First parts of the keys that change the line or its mesh."""
+
 CAMPAIGN = "campaign"
 """Origin of the varied inputs in messages."""
 
@@ -138,6 +141,12 @@ class RunExecution:
         row = _build_row(run, result, missing, time.perf_counter() - start)
         traces = pack_traces(result, row.verdicts["verdict"], self.stored_traces)
         return replace(row, traces=traces, balance_forces=_find_balance_forces(case, result))
+
+    def find_line(self, run: PlannedRun) -> tuple[object, ...] | None:
+        """Case of a run, and its inputs that change the line or its mesh; None: its passages are not simulated here."""
+        if run.system != "builtin":
+            return None
+        return (run.case_id, *((key, value) for key, value in run.inputs.items() if key.split(".")[0] in LINE_KEYS))
 
     def _start_system(self, run: PlannedRun) -> System:
         """System of a run; the simulator begins the tuning at predicted uplift forces, if there are any."""

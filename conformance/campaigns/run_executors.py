@@ -6,8 +6,9 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
-from itertools import islice
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import groupby, islice
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Protocol
@@ -25,6 +26,7 @@ from pantocheck.conformance.core.processes import (
     handle_worker_signals,
     limit_threads,
 )
+from pantocheck.conformance.runs.passages_together import most_together, run_together
 
 Execute = Callable[[PlannedRun], RunRow]
 """Function that executes one run; it can be sent to other processes."""
@@ -62,7 +64,9 @@ class LocalWorkers:
     workers: int
     """Number of processes."""
     run_time_limit_s: float | None = None
-    """Time after which a single run fails and its process is ended [s]."""
+    """Time after which a single run fails and its process is ended [s]; a process then executes one run at a time."""
+    runs_together: int = 1
+    """Largest number of runs on one line that a process executes together."""
 
     @property
     def description(self) -> str:
@@ -72,15 +76,15 @@ class LocalWorkers:
     def execute_all(self, runs: Iterator[PlannedRun], execute: Execute) -> Generator[RunRow, None, None]:
         """Execute runs as in `RunExecutor`."""
         limit_threads()
-        waiting, deaths = deque[PlannedRun](), Counter[int]()
+        again, deaths = deque[PlannedRun](), Counter[int]()
         busy: dict[Connection, _Worker] = {}
         idle: list[_Worker] = []
+        together = 1 if self.run_time_limit_s is not None else self.runs_together
+        batches = split_runs(runs, execute, together, self.workers)
         with adopt_orphans(), _end_children():
             while True:
-                while (
-                    len(busy) < self.workers and (run := waiting.popleft() if waiting else next(runs, None)) is not None
-                ):
-                    worker = _give(run, idle, execute)
+                while len(busy) < self.workers and (batch := [again.popleft()] if again else next(batches, [])):
+                    worker = _give(batch, idle, execute)
                     busy[worker.connection] = worker
                 if not busy:
                     return
@@ -89,18 +93,19 @@ class LocalWorkers:
                     if answer == _STARTED:
                         worker.started = time.monotonic()
                         busy[worker.connection] = worker
-                    elif isinstance(answer, RunRow):
+                    elif isinstance(answer, list):
                         idle.append(worker)
-                        yield answer
+                        yield from answer
                     else:
                         end_workers([worker.process])
-                        deaths[worker.run.number] += 1
-                        if self._is_late(worker):
-                            yield build_failed_row(worker.run, f"longer than {self.run_time_limit_s:g} s", worker.age)
-                        elif deaths[worker.run.number] < MOST_ATTEMPTS:
-                            waiting.append(worker.run)
-                        else:
-                            yield build_failed_row(worker.run, PROCESS_ENDED, worker.age)
+                        for run in worker.runs:
+                            deaths[run.number] += 1
+                            if self._is_late(worker):
+                                yield build_failed_row(run, f"longer than {self.run_time_limit_s:g} s", worker.age)
+                            elif deaths[run.number] < MOST_ATTEMPTS:
+                                again.append(run)
+                            else:
+                                yield build_failed_row(run, PROCESS_ENDED, worker.age)
 
     def _wait(self, busy: "dict[Connection, _Worker]") -> "list[_Worker]":
         """Wait for workers that answer, end or are late, and take them out of the busy ones."""
@@ -116,11 +121,11 @@ class LocalWorkers:
 
 @dataclass
 class _Worker:
-    """Worker process with the run that it executes."""
+    """Worker process with the runs that it executes together."""
 
     process: BaseProcess
     connection: Connection
-    run: PlannedRun
+    runs: list[PlannedRun]
     started: float | None = None
 
     @property
@@ -128,11 +133,11 @@ class _Worker:
         """Time since the start of the run [s]; 0 while the process is starting."""
         return 0.0 if self.started is None else time.monotonic() - self.started
 
-    def receive(self) -> RunRow | str | None:
-        """Row of the finished run, or sign of its start; None if the process has ended or is late."""
+    def receive(self) -> list[RunRow] | str | None:
+        """Rows of the finished runs, or sign of their start; None if the process has ended or is late."""
         with suppress(EOFError, OSError):
             if self.connection.poll():
-                answer: RunRow | str = self.connection.recv()
+                answer: list[RunRow] | str = self.connection.recv()
                 return answer
         return None
 
@@ -147,13 +152,13 @@ def _end_children() -> Iterator[None]:
         end_workers(set(multiprocessing.active_children()) - others)
 
 
-def _give(run: PlannedRun, idle: list[_Worker], execute: Execute) -> _Worker:
-    """Give a run to an idle worker, or to a new one; an idle worker that has ended is forgotten."""
+def _give(runs: list[PlannedRun], idle: list[_Worker], execute: Execute) -> _Worker:
+    """Give runs to an idle worker, or to a new one; an idle worker that has ended is forgotten."""
     while idle:
         worker = idle.pop()
         with suppress(OSError):
-            worker.connection.send(run)
-            worker.run, worker.started = run, None
+            worker.connection.send(runs)
+            worker.runs, worker.started = runs, None
             return worker
     # Fresh interpreters: threads of a compiled kernel do not survive a fork.
     context = multiprocessing.get_context("spawn")
@@ -162,8 +167,8 @@ def _give(run: PlannedRun, idle: list[_Worker], execute: Execute) -> _Worker:
     process.start()
     far_end.close()  # the connection then ends with the worker
     with suppress(OSError):  # a worker that has ended already is noticed when its answer is awaited
-        connection.send(run)
-    return _Worker(process, connection, run)
+        connection.send(runs)
+    return _Worker(process, connection, runs)
 
 
 def _work(connection: Connection, execute: Execute) -> None:
@@ -172,9 +177,9 @@ def _work(connection: Connection, execute: Execute) -> None:
     delay_garbage_searches()
     with suppress(EOFError, OSError):  # of the connection: the parent has ended
         while True:
-            run: PlannedRun = connection.recv()
+            runs: list[PlannedRun] = connection.recv()
             connection.send(_STARTED)
-            connection.send(call_execution(execute, run))
+            connection.send(execute_together(execute, runs))
 
 
 # Cluster of Dask: workers on many machines, which can come and go during a campaign.
@@ -267,8 +272,36 @@ def execute_batch(execute: Execute, runs: Sequence[PlannedRun]) -> tuple[list[Ru
     """Execute runs on a worker; an exception becomes the reason of a failed run. Returns the duration, too [s]."""
     delay_garbage_searches()
     start = time.perf_counter()
-    rows = [call_execution(execute, run) for run in runs]
+    batches = split_runs(iter(runs), execute, most_together(), 1)
+    rows = [row for batch in batches for row in execute_together(execute, batch)]
     return rows, time.perf_counter() - start
+
+
+def execute_together(execute: Execute, runs: Sequence[PlannedRun]) -> list[RunRow]:
+    """Execute runs whose passages are simulated together; each takes an equal share of the computing time."""
+    if len(runs) == 1:
+        return [call_execution(execute, run) for run in runs]
+    rows = run_together([partial(call_execution, execute, run) for run in runs])
+    return [replace(row, wall_s=row.wall_s / len(rows)) for row in rows]
+
+
+def split_runs(runs: Iterator[PlannedRun], execute: Execute, most: int, workers: int) -> Iterator[list[PlannedRun]]:
+    """Split runs into batches of consecutive runs on one line, which are executed together.
+
+    Args:
+        runs: Runs; at most `most` for each worker are taken ahead, and shared among the workers.
+        execute: Execution that knows the line of a run (`RunExecution.find_line`); other ones have batches of one run.
+        most: Largest number of runs in a batch.
+        workers: Number of workers.
+    """
+    find_line: Callable[[PlannedRun], object] | None = getattr(execute, "find_line", None)
+    if find_line is None or most == 1:
+        yield from ([run] for run in runs)
+        return
+    while taken := list(islice(runs, most * workers)):
+        for line, group in groupby(taken, find_line):
+            on_line, size = list(group), 1 if line is None else -(-len(taken) // workers)
+            yield from (on_line[first : first + size] for first in range(0, len(on_line), size))
 
 
 def call_execution(execute: Execute, run: PlannedRun) -> RunRow:
@@ -327,4 +360,4 @@ def choose_executor(execution: Execution) -> Iterator[RunExecutor]:
         with start_cluster(execution.cluster, workers, execution.cluster_options) as executor:
             yield executor
     else:
-        yield LocalWorkers(workers, execution.run_time_limit_s)
+        yield LocalWorkers(workers, execution.run_time_limit_s, most_together())

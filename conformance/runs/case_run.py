@@ -22,6 +22,7 @@ from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.case_facts_format import FmuRun
 from pantocheck.conformance.runs.core_requirement import announce_compilation, require_core
 from pantocheck.conformance.runs.fmu_process import describe_coupling, open_fmu
+from pantocheck.conformance.runs.passages_together import GATE
 from pantocheck.conformance.runs.uplift_tuning import (
     TuningFailed,
     build_pantographs,
@@ -287,6 +288,9 @@ def integrate_passage(
     require_core("passage simulation")
     from pantocheck.model.dynamics.simulation import simulate_passage
 
+    gate = GATE.get()
+    if gate is not None and passage.frames is None and not any(programs):
+        return gate.simulate(line, passage)
     return simulate_passage(line, passage, progress, programs)
 
 

@@ -44,11 +44,15 @@ class Lane(NamedTuple):
     """Number of the step of all lanes with which the passage begins."""
 
 
-def count_lanes(line: DiscretisedLine) -> int:
-    """Number of passages that advance at once on a line: one with another core, or with distributed forces."""
+def count_core_lanes() -> int:
+    """Number of passages that the core advances at once; one with another core than that in C."""
     library = choose_core().library
-    has_distributed_forces = line.stretches.first.size or line.catenary.modal_damping
-    return 1 if library is None or has_distributed_forces else int(call_core(library, "lanes", ()))
+    return 1 if library is None else int(call_core(library, "lanes", ()))
+
+
+def count_lanes(line: DiscretisedLine) -> int:
+    """Number of passages that advance at once on a line; one with distributed forces."""
+    return 1 if line.stretches.first.size or line.catenary.modal_damping else count_core_lanes()
 
 
 def simulate_passages(

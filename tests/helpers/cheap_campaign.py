@@ -5,6 +5,7 @@ import signal
 import sys
 import time
 from collections.abc import Generator, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun, RangeAxis
@@ -48,6 +49,13 @@ def fail_even(run: PlannedRun) -> RunRow:
     return build_failed_row(run, "even", 0.0) if run.number % 2 == 0 else compute_row(run)
 
 
+def end_first(run: PlannedRun) -> RunRow:
+    """Row of a run; run 1 ends its process."""
+    if run.number == 1:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return compute_row(run)
+
+
 def misbehave(run: PlannedRun) -> RunRow:
     """Run 1 ends its process, run 2 raises an exception, run 3 takes longer than the limit of its test."""
     if run.number == 1:
@@ -57,6 +65,20 @@ def misbehave(run: PlannedRun) -> RunRow:
     if run.number == 3:
         time.sleep(60)
     return compute_row(run)
+
+
+@dataclass(frozen=True)
+class OnOneLine:
+    """Execution whose runs are on the same line."""
+
+    execute: Execute
+
+    def __call__(self, run: PlannedRun) -> RunRow:
+        return self.execute(run)
+
+    def find_line(self, run: PlannedRun) -> object:
+        """The same line for all runs but the last."""
+        return None if run.number == 5 else run.case_id
 
 
 class ThisProcess:

@@ -7,23 +7,34 @@ import subprocess
 import sys
 import time
 from contextlib import closing, suppress
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from helpers.cheap_campaign import (
+    OnOneLine,
     ThisProcess,
     build_table,
+    compute_row,
     compute_slowly,
+    end_first,
     fail_even,
     fill_store,
     misbehave,
     speed_design,
 )
 from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
-from pantocheck.conformance.campaigns.campaign_file import Execution
+from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
+from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign
 from pantocheck.conformance.campaigns.campaign_store import STORE_NAME, open_store
-from pantocheck.conformance.campaigns.run_executors import LocalWorkers
+from pantocheck.conformance.campaigns.run_executors import (
+    PROCESS_ENDED,
+    LocalWorkers,
+    execute_batch,
+    execute_together,
+    split_runs,
+)
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.model.dynamics import recording
 
@@ -138,6 +149,43 @@ def test_failing_runs_become_rows_with_their_reason(tmp_path: Path, monkeypatch:
         assert store.count() == (2, 0)
         fill_store(store, design)
         assert store.count() == (5, 0)
+
+
+def test_runs_on_one_line_are_executed_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that ends its process is repeated alone, and so are those that were executed together with it."""
+    monkeypatch.setattr("pantocheck.conformance.campaigns.run_executors.MOST_ATTEMPTS", 2)
+    runs, execute = list(speed_design(9).list_runs()), OnOneLine(misbehave)
+    for most, workers, sizes in ((4, 2, [4, 1, 3, 1]), (8, 2, [4, 1, 4]), (1, 2, [1] * 9), (8, 9, [1] * 9)):
+        batches = list(split_runs(iter(runs), execute, most, workers))
+        assert [len(batch) for batch in batches] == sizes
+        assert [run for batch in batches for run in batch] == runs
+    with open_store(tmp_path, {}) as store:
+        executor = LocalWorkers(1, runs_together=4)
+        drive_campaign(speed_design(4), OnOneLine(end_first), store, executor, Execution(), lambda _: None)
+        reasons = {row.run.number: row.reason for row in store.rows()}
+    assert reasons == {1: PROCESS_ENDED, 2: None, 3: None, 4: None}
+    rows, duration = execute_batch(OnOneLine(compute_row), runs)
+    assert [row.quantities for row in rows] == [compute_row(run).quantities for run in runs]
+    assert duration > 0
+
+
+def test_rows_of_runs_on_one_line_are_those_of_each_alone() -> None:
+    """Speeds share the line, tensions do not; the rows differ in their computing time only."""
+    vary = [
+        {"key": "line.contact_wire.tension_N", "values": [20e3, 21e3]},
+        {"key": "speed_km_h", "values": [240.0, 250.0]},
+    ]
+    campaign = prepare_campaign(CampaignFile.model_validate({"cases": ["en50318-2002/250"], "vary": vary}), Path())
+    runs = list(campaign.design.list_runs())
+    lines = [campaign.execute.find_line(run) for run in runs]
+    assert lines[0] == lines[1] != lines[2] == lines[3]
+    assert campaign.execute.find_line(replace(runs[0], system="record:folder")) is None
+    assert campaign.execute.find_line(replace(runs[0], inputs={"discretisation.element_m": 1.0})) != lines[0]
+    alone = [replace(campaign.execute(run), wall_s=0.0) for run in runs]
+    together = execute_together(campaign.execute, runs)
+    assert all(row.wall_s > 0 for row in together)
+    assert [replace(row, wall_s=0.0) for row in together] == alone
+    assert not any(row.is_failed for row in alone)
 
 
 def test_campaign_stops_at_a_share_of_failed_runs_and_goes_on_with_a_larger_one(tmp_path: Path) -> None:
