@@ -133,7 +133,7 @@ DEFAULT_READING = "default"
 
 
 def find_empty_section(section: tuple[float, float] | None) -> Problems:
-    """Problem of a section [m, m] that does not end behind its start."""
+    """Problem of a section [m, m] whose end is not after its start."""
     if section is not None and section[1] <= section[0]:
         start, end = section
         yield validation_problem(

@@ -64,7 +64,7 @@ BAND_EDGES_HZ = tuple(range(0, 51, 5))
 """Bands of a passage [Hz]. Other clamps move the peaks of the dropper passing, and hardly change the wide bands."""
 
 HOLD_OUT_LEVEL = 0.01
-"""Probability that the held-out passage refuses a right line [-]."""
+"""Probability that the held-out passage refutes a correct line [-]."""
 
 Predict = Callable[[RealArray], RealArray]
 """Values of the model for the factors of all properties."""

@@ -39,7 +39,7 @@ Arguments = ParamSpec("Arguments")
 
 @dataclass(frozen=True)
 class DrawnLine:
-    """DrawnLine, or points with markers."""
+    """Line, or points with markers."""
 
     x: RealArray
     y: RealArray

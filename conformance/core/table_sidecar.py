@@ -115,8 +115,8 @@ class NamedTableSidecar(TableSidecar):
 
     file: TableName
     columns: Annotated[dict[str, ColumnName], Field(default_factory=dict, max_length=10)]
-    """Names of the columns in the table, where they are others: the name of this suite, with its unit, then that of
-    the table; further columns are ignored then.
+    """Names of the columns in the table, by the names of this suite with their units, where both differ; further
+    columns are then ignored.
     """
     note: Annotated[str | None, Field(max_length=4000)] = None
     """Remark for the reader."""

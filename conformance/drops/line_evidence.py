@@ -17,7 +17,7 @@ from pantocheck.conformance.results.damping_format import (
 from pantocheck.model import Catenary
 
 LEVEL = 0.01
-"""Probability that a test refutes a line, or any group, although it is right [-]."""
+"""Probability that a test refutes a line, or any group, although it is correct [-]."""
 
 REFUTED_TENSION = 0.006
 """Smallest relative error of a tension that contradicts a line [-]: it changes frequencies by 0.3 %."""

@@ -125,7 +125,7 @@ class StaticComparison(ModelComparison):
     )
     record: ComparedSource
     record_state: Literal["unconfirmed"] = "unconfirmed"
-    """A table of static values has no second channel that confirms it."""
+    """State of the record: static values have no second channel that confirms them."""
     element_m: Rounded
     force_N: tuple[Rounded, ...]
     """Static forces of the elasticity."""

@@ -49,6 +49,6 @@ class LineUpdate(RoundedModel):
     covariance: JointCovariance
     held_out: tuple[HeldOutValue, ...] = ()
     probability: Rounded | None = None
-    """Probability of the distance of the held-out passage if the updated line is right [-]."""
+    """Probability of the distance of the held-out passage if the updated line is correct [-]."""
     verdict: Verdict
     """pass or fail by the held-out passage alone, at a level of 1 %; info without one."""
