@@ -55,7 +55,7 @@ def fresh_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(globals(), "MEMORY", Forgetful())
 
 
-PAINTED = {"commands", "notebook"}
+PAINTED = {"commands", "comparison", "drops", "network", "notebook"}
 """Folders whose tests read texts, numbers and exit codes; the tests of the pages read the figures."""
 
 EMPTY: dict[bytes, str] = {}

@@ -26,13 +26,19 @@ COMMANDS = {
 }
 
 
-@pytest.fixture
-def workplace(wave: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Folder with records, as the current one: paths of the user are short."""
-    monkeypatch.chdir(tmp_path)
+@pytest.fixture(scope="module")
+def records(wave: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with records of both cases."""
+    folder = tmp_path_factory.mktemp("workplace") / "records"
     for case in select_cases(["en50318-2002/*"]):
-        write_record(Path("records", f"{case.file.speed_km_h:g}.csv"), wave().record(case), case.id)
-    return tmp_path
+        write_record(folder / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
+    return folder
+
+
+@pytest.fixture
+def workplace(records: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parent of the records as the current folder: paths of the user are short."""
+    monkeypatch.chdir(records.parent)
 
 
 @pytest.mark.usefixtures("workplace")
