@@ -25,11 +25,11 @@ from pantocheck.conformance.pages.document import (
 )
 from pantocheck.conformance.pages.figure_files import list_figures
 from pantocheck.conformance.pages.page_code import (
+    SCENE_SCRIPTS,
     PageCode,
     read_explorer_code,
     read_plain_code,
     read_results_code,
-    read_scene_code,
 )
 from pantocheck.conformance.pages.translation import translate, translate_document, translate_tree
 from pantocheck.conformance.pages.words import bind_page_units, read_words
@@ -72,7 +72,7 @@ def _choose_code(document: Document) -> tuple[str, str | None, PageCode]:
     if document.results is not None:
         return BLOCK_ID, encode_data_block(document.results), read_results_code(document.language)
     if document.scenes:
-        return SCENES_ID, encode_scenes(document.scenes), read_scene_code(document.language)
+        return SCENES_ID, encode_scenes(document.scenes), read_plain_code(document.language, SCENE_SCRIPTS)
     if document.exploration is not None:
         return SCENES_ID, encode_exploration(document.exploration), read_explorer_code()
     return "", None, read_plain_code(document.language)

@@ -67,16 +67,9 @@ class PageCode:
 
 
 @cache
-def read_plain_code(language: str = LANGUAGES[0]) -> PageCode:
-    """Styles and scripts of a page without results."""
-    script = join_scripts(name_scripts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS)), language)
-    return PageCode((translate_marked(_read(PAGE_STYLE), language),), (script,))
-
-
-@cache
-def read_scene_code(language: str = LANGUAGES[0]) -> PageCode:
-    """Styles and scripts of a page with moving pictures and without results."""
-    script = join_scripts(name_scripts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS, *SCENE_SCRIPTS)), language)
+def read_plain_code(language: str = LANGUAGES[0], scripts: tuple[str, ...] = ()) -> PageCode:
+    """Styles and scripts of a page without results; `scripts` are those of its moving pictures."""
+    script = join_scripts(name_scripts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS, *scripts)), language)
     return PageCode((translate_marked(_read(PAGE_STYLE), language),), (script,))
 
 
