@@ -47,13 +47,18 @@ class _EmbeddedSignals(RecordSignals):
         assert self.embedded_line is not None
         return self.embedded_line
 
+    @property
+    def delivered_line(self) -> LineSignals:
+        """Uplift at the supports, which is embedded if none has a fault."""
+        return self.line
+
 
 def check_rows(results: Results) -> list[DocumentCheck]:
     """Compute the numbers of the consistency checks again, as far as the embedded signals of library cases allow."""
     proved, differences = [], []
     for case, made, rows in _list_rows(results):
         if made is not None:
-            names = ", ".join(row.check for row in rows if _is_repeated(row, made))
+            names = ", ".join(row.check for row in rows if _is_repeated(row, made, case))
             proved += [f"{case.id} ({names})"] if names else []
             differences += [f"{case.id}, {text}" for text in _compare_rows(case, made, rows)]
     text = f"Numbers of consistency checks follow from the embedded signals: {'; '.join(proved)}."
@@ -70,7 +75,7 @@ def name_other_rows(results: Results, repeated: Collection[str]) -> list[Documen
     """
     others = []
     for case, made, rows in _list_rows(results):
-        names = ", ".join(row.check for row in rows if not _is_repeated(row, made))
+        names = ", ".join(row.check for row in rows if not _is_repeated(row, made, case))
         reason = "they need the whole record" if made else "they need a library case with embedded signals"
         others += [f"{case.id}: {names}; {reason}"] if names and case.id not in repeated else []
     text = "The numbers of these consistency checks (option --record)."
@@ -84,7 +89,11 @@ def _list_rows(results: Results) -> Iterator[tuple[CaseResult, Case | None, list
             yield case, _find_case(case), [row for row in case.record.checks if row.outcome != "not reached"]
 
 
-def _is_repeated(row: CheckRow, case: Case | None) -> bool:
+def _is_repeated(row: CheckRow, case: Case | None, result: CaseResult) -> bool:
+    """Whether the embedded signals repeat a row; an uplift with a fault, which bounds a mean force, is not embedded."""
+    needs_uplift = row.check == MEAN_FORCE.name and isinstance(row.basis, Measured)
+    if needs_uplift and result.signals is not None and not result.signals.uplift:
+        return False
     return case is not None and row.check in {check.name for check in list_repeated(case)}
 
 
@@ -111,7 +120,7 @@ def _compare_rows(result: CaseResult, case: Case, rows: list[CheckRow]) -> Itera
     try:
         signals = unpack_signals(result.signals, case.file.filter)
         for row in rows:
-            if row.check in repeated:
+            if _is_repeated(row, case, result):
                 yield from compare_row(row, repeat_check(repeated[row.check], case, signals).basis, SHARE_OF_THRESHOLD)
             elif row.check == COPY.name:
                 yield from _find_hidden_copy(row, signals)

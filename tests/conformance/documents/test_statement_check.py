@@ -1,16 +1,21 @@
 """Statements that other parts determine: reasons, places and dates are found where they do not follow."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
 from pydantic import ValidationError
 
+from helpers.wave_system import Wave
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.documents.document_reading import ResultsFile
 from pantocheck.conformance.documents.statement_check import FAST_CLOCK, check_date
 from pantocheck.conformance.documents.verification import verify_certificate
+from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.results_building import TIME_FORMAT
+from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.results_format import Results
 
 Tree = dict[str, Any]
@@ -69,8 +74,21 @@ def list_contradictions(tree: Tree) -> tuple[str, ...]:
     return verify_certificate(ResultsFile("results.json", results.to_json(), results)).discrepancies
 
 
-def test_genuine_results_have_no_contradiction(wave_results: Results) -> None:
+class OffsetWave(Wave):
+    """The wave with a zero error of its uplift sensors, whose uplift is refused and not embedded."""
+
+    def record(self, case: Case) -> Record:
+        record = super().record(case)
+        assert record.support_uplift is not None
+        return replace(record, support_uplift=record.support_uplift + 0.02)
+
+
+def test_genuine_results_have_no_contradiction(wave_results: Results, case_250: Case) -> None:
     assert list_contradictions(wave_results.to_dict()) == ()
+    faulty = run_cases([case_250], OffsetWave())
+    assert faulty.cases[0].signals is not None
+    assert not faulty.cases[0].signals.uplift
+    assert list_contradictions(faulty.to_dict()) == ()
 
 
 def test_note_of_a_modified_copy_is_its_own(wave_results: Results) -> None:
