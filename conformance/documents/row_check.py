@@ -120,7 +120,7 @@ def _compare_rows(result: CaseResult, case: Case, rows: list[CheckRow]) -> Itera
     try:
         signals = unpack_signals(result.signals, case.file.filter)
         for row in rows:
-            if _is_repeated(row, case, result):
+            if row.check in repeated and _is_repeated(row, case, result):
                 yield from compare_row(row, repeat_check(repeated[row.check], case, signals).basis, SHARE_OF_THRESHOLD)
             elif row.check == COPY.name:
                 yield from _find_hidden_copy(row, signals)
