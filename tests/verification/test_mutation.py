@@ -85,10 +85,12 @@ def test_covering_tests_execute_the_line_and_the_one_of_its_name_comes_first(toy
     tests = CoveringTests(toy, [first, other])
     assert tests.file_seconds["tests/model/test_near.py"] == 13.0
     assert tests.select(file, 8) == [named, use, near]
-    assert tests.select(file, 6) == [use]
+    assert tests.select(file, 6) == [named, use, near]  # a definition, which the first importing test executes
     assert tests.select(file, 3) == [named, use, near]  # a constant: every test of the file
     assert tests.select("model/use.py", 6) == [near, named]  # the same folder
     assert tests.select("model/grading/kernel.py", 3) == []
+    unexecuted = CoveringTests(toy, [{"lines": {file: {"3": "0x2"}}, "seconds": first["seconds"]}])
+    assert unexecuted.select(file, 8) == []
 
 
 def test_coverage_of_the_tests_is_recorded_by_line(toy: Path, tmp_path: Path) -> None:

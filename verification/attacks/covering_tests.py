@@ -36,19 +36,23 @@ class CoveringTests:
     def select(self, file: str, line: int) -> list[str]:
         """Tests that execute a line: those in the file of its name, those of the same folder, then the fastest.
 
-        A line that runs at import belongs to every test of its file; those that mention its definition come first. The
-        tests of all bounds precede them where the statement has the bounds of a key.
+        A line that runs at import belongs to every test of its file, or to those that mention its definition if no test
+        executes a line of the file; those that mention it come first. The tests of all bounds precede them where the
+        statement has the bounds of a key.
         """
         source = (self.root / file).read_text("utf-8")
         lines, names = self.lines.get(file, {}), name_definitions(source, line)
         statement = list_statement_lines(source, line)
-        executing = [lines.get(number, 0) for number in statement]
-        bits = reduce(or_, executing if any(executing) else lines.values(), 0)
+        at_import = runs_at_import(source, line)
+        # A test that imports the file first executes these lines, and no other test does.
+        bits = reduce(or_, lines.values() if at_import else (lines.get(number, 0) for number in statement), 0)
         found = {test for number, test in enumerate(self.seconds) if bits >> number & 1}
         has_bounds = any("Field(" in source.splitlines()[number - 1] for number in statement)
         bounds = {test for test in self.seconds if has_bounds and Path(_name_file(test)).name in BOUND_TESTS}
         mention = re.compile(rf"\b({'|'.join(names)})\b")
-        texts = {name: (self.root / name).read_text("utf-8") for name in set(map(_name_file, found | bounds))}
+        texts = {name: (self.root / name).read_text("utf-8") for name in self.file_seconds}
+        if at_import and not found:  # a file of declarations alone
+            found = {test for test in self.seconds if names and mention.search(texts[_name_file(test)])}
 
         def rank(test: str) -> tuple[bool, bool, bool, bool, float]:
             path = Path(_name_file(test))
@@ -62,6 +66,12 @@ class CoveringTests:
 
 def _name_file(test: str) -> str:
     return test.partition("::")[0]
+
+
+def runs_at_import(source: str, line: int) -> bool:
+    """Whether a line is in no body of a function."""
+    functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
+    return not any(node.body[0].lineno <= line <= (node.end_lineno or 0) for node in functions)
 
 
 def list_statement_lines(source: str, line: int) -> range:

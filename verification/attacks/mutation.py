@@ -236,7 +236,7 @@ def main() -> int:
     parser.add_argument("--mutants", type=int, default=60, help="size of the sample of each folder")
     parser.add_argument("--folders", nargs="*", help="default: all")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--tests", type=int, default=40, help="largest number of tests of a mutant")
+    parser.add_argument("--tests", type=int, default=100, help="largest number of tests of a mutant")
     parser.add_argument("--budget", type=float, default=30.0, help="largest processor time of these [s]")
     parser.add_argument("--renew", action="store_true", help="copy the checkout anew, and judge what it may change")
     options = parser.parse_args()
