@@ -22,7 +22,7 @@ from pantocheck.conformance.comparison.static_record import StaticRecord
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.near_limit import QUANTILE_95
 from pantocheck.conformance.core.verdicts import Verdict
-from pantocheck.conformance.drops.joint_fit import Prior, fit_jointly
+from pantocheck.conformance.drops.joint_fit import build_prior, fit_jointly
 from pantocheck.conformance.drops.line_evidence import DETERMINED
 from pantocheck.conformance.drops.mode_matching import select_usable
 from pantocheck.conformance.line.catenary_model import build_catenary
@@ -115,7 +115,7 @@ def update_by_modes(
     mechanical = tuple(each for each in estimate.parameters if each.group is not None)
     damping = tuple(each for each in estimate.parameters if each.group is None)
     count = len(mechanical)
-    prior = Prior(mechanical, estimate.covariance[:count, :count], frozenset(PARAMETER_GROUPS))
+    prior = build_prior(mechanical, estimate.covariance[:count, :count], PARAMETER_GROUPS)
     catenary = build_catenary(line)
     fit = fit_jointly(select_usable(modes, source), catenary, prior, np.eye(4), element, source)
     kept = [number for number, each in enumerate(DAMPING) if each in damping]
@@ -125,7 +125,7 @@ def update_by_modes(
     used = UsedData(name="modes", values=3 * fit.used.size, misfit=fit.misfit)
     return replace(
         estimate,
-        factors=np.append(fit.factors, fit.values[kept] / stated),
+        factors=np.append(fit.factors[:count], fit.values[kept] / stated),
         covariance=fit.covariance[np.ix_(rows, rows)] * np.outer(scale, scale),
         data=(*estimate.data, used),
     )

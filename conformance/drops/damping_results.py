@@ -28,7 +28,7 @@ from pantocheck.conformance.drops.damping_model import (
     judge_coefficients,
     list_other_damping,
 )
-from pantocheck.conformance.drops.joint_fit import JointFit, Prior, fit_jointly, solve_about
+from pantocheck.conformance.drops.joint_fit import JointFit, Prior, build_prior, fit_jointly, solve_about
 from pantocheck.conformance.drops.line_comparison import compare_line, warn_about_line
 from pantocheck.conformance.drops.line_evidence import (
     assess_groups,
@@ -112,7 +112,7 @@ class FitOptions:
         covariance = self.tolerances
         if covariance is None:
             covariance = np.diag([parameter.tolerance**2 for parameter in MECHANICAL])
-        return Prior(MECHANICAL, covariance, frozenset(free))
+        return build_prior(MECHANICAL, covariance, free)
 
 
 def build_damping_results(

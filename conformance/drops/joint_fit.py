@@ -10,8 +10,11 @@ span modes, so that a group which the wires do not explain remains visible.
 
 References:
     [1] S. F. Schmidt, Application of state-space methods to navigation problems, Advances in Control Systems 3 (1966).
+    [2] H. D. Patterson, R. Thompson, Recovery of inter-block information when block sizes are unequal, Biometrika 58
+        (1971) 545-554.
 """
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -28,7 +31,7 @@ from pantocheck.conformance.drops.damping_model import (
     solve_weighted,
 )
 from pantocheck.conformance.drops.line_linearisation import Linearisation, linearise_line
-from pantocheck.conformance.line.line_parameters import LineParameter, ParameterGroup
+from pantocheck.conformance.line.line_parameters import BENDING, LineParameter, ParameterGroup
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model import Catenary
 from pantocheck.model.description.one_thread import use_one_thread
@@ -59,6 +62,12 @@ class Prior:
         return np.array([parameter.group in self.free for parameter in self.parameters], dtype=np.bool_)
 
 
+def build_prior(parameters: Sequence[LineParameter], covariance: RealArray, free: Iterable[ParameterGroup]) -> Prior:
+    """Prior of properties with their covariance [-], and of the bending stiffness of the wires, which stays unknown."""
+    bending = np.diag([each.tolerance**2 for each in BENDING])
+    return Prior((*parameters, *BENDING), scipy.linalg.block_diag(covariance, bending), frozenset(free))
+
+
 class Scatter(NamedTuple):
     """Relative standard deviations of the line model beside those of the measurement [-]."""
 
@@ -71,8 +80,14 @@ class Scatter(NamedTuple):
 START_SCATTER = Scatter(5e-4, MODEL_ERROR, 1.0)
 """Scatter of the first solution."""
 
-LEAST_SCATTER = Scatter(1e-5, 5e-4, 0.05)
-"""Scatter by the discretisation alone: a fit of few modes cannot be better than its line."""
+LEAST_SCATTER = Scatter(1e-4, 1e-4, 0.05)
+"""Scatter by the discretisation alone: a fit cannot be better than its line. The modes of the record T1, which another
+program computed, differ by this much once the bending stiffness is found; the errors of near modes are similar, so that
+a smaller scatter of the frequencies would take them for tensions. Chosen after the errors of T1 had been seen.
+"""
+
+SCATTER_TRIALS = 60
+"""Number of scatters whose likelihood is compared."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +114,8 @@ class JointFit:
     """Scatter of the line model."""
     freedom: int
     """Degrees of freedom of the scatter of the damping ratios."""
+    ratio_freedom: float
+    """Degrees of freedom of the variance of the damping ratios, whose noise is known (Satterthwaite 1946)."""
     misfit: float
     """Squared residual over its expectation [-]; above 1, it widens the covariance."""
 
@@ -155,6 +172,12 @@ class _Rows:
     columns: RealArray
     covariance: RealArray
     """By noise, and by the properties that are not free."""
+    unknown: RealArray
+    """Change by each of those q properties that differs by its tolerance, in independent directions, (n, q)."""
+
+    def subtract_expected(self, residual: RealArray) -> RealArray:
+        """Residuals of the rows without the changes by those properties that they let expect."""
+        return np.asarray(residual - self.unknown @ (self.unknown.T @ np.linalg.solve(self.covariance, residual)))
 
 
 @dataclass(frozen=True)
@@ -192,14 +215,13 @@ class _Problem:
         )
         columns = np.zeros((len(slope), self.joins.shape[1]))
         columns[used.size : 2 * used.size] = linear.ratios[used] @ self.joins
-        unknown = slope[:, ~free]
-        covariance = np.diag(np.concatenate(std) ** 2)
-        covariance += unknown @ self.prior.covariance[np.ix_(~free, ~free)] @ unknown.T
-        return _Rows(np.concatenate(target), slope[:, free], columns, covariance)
+        variance, direction = np.linalg.eigh(self.prior.covariance[np.ix_(~free, ~free)])
+        unknown = slope[:, ~free] @ (direction * np.sqrt(np.maximum(variance, 0.0)))
+        covariance = np.diag(np.concatenate(std) ** 2) + unknown @ unknown.T
+        return _Rows(np.concatenate(target), slope[:, free], columns, covariance, unknown)
 
-    def residual(self, fit: JointFit, used: IntegerArray) -> RealArray:
-        """Residuals of all rows of pairs, those left out of the fit included."""
-        rows = self.build_rows(used, fit.scatter)
+    def residual(self, fit: JointFit, rows: _Rows) -> RealArray:
+        """Residuals of the rows of pairs, those left out of the fit included."""
         return rows.target - rows.slope @ (fit.factors - self.factors)[self.prior.is_free] - rows.columns @ fit.values
 
 
@@ -210,7 +232,8 @@ def _fit_linear(problem: _Problem) -> JointFit:
     refuse_few_modes(candidates.size, problem.joins.shape[1])
     fit = _solve_rows(problem, candidates, START_SCATTER)
     for _ in range(4):
-        left, count = problem.residual(fit, candidates), candidates.size
+        rows, count = problem.build_rows(candidates, fit.scatter), candidates.size
+        left = rows.subtract_expected(problem.residual(fit, rows))
         group, zeta = measured.group[candidates], measured.damping_ratio[candidates]
         std = np.hypot(measured.std[candidates], fit.scatter.damping * zeta)
         near = near_their_group(left[count : 2 * count], std, group)
@@ -221,30 +244,50 @@ def _fit_linear(problem: _Problem) -> JointFit:
 
 
 def _find_scatter(problem: _Problem, fit: JointFit, used: IntegerArray) -> Scatter:
-    """Scatter of the line model with which each part of the residuals has its expected size."""
-    left, count = problem.residual(fit, used), used.size
+    """Scatter of the line model by the residuals of each part of the data."""
+    rows, count = problem.build_rows(used, fit.scatter), used.size
+    left = problem.residual(fit, rows)
     measured = problem.linear.matched.measured.select(used)
-    ratio, numbers = left[count : 2 * count] / measured.damping_ratio, np.unique(measured.group)
-    means = np.array([ratio[measured.group == number].mean() for number in numbers])
-    within = ratio - means[np.searchsorted(numbers, measured.group)]
+    groups = np.equal.outer(measured.group, np.unique(measured.group)).astype(float)
+    relative = np.column_stack([left[count : 2 * count], rows.unknown[count : 2 * count], measured.std])
+    ratio, *unknown, ratio_std = (relative / measured.damping_ratio[:, None]).T
     modes = [problem.linear.matched.paired[i] for i in used]
     frequency_std = np.array([(mode.frequency_std_Hz or 0.0) / mode.frequency_Hz for mode in modes])
     shape = left[2 * count :]
     return Scatter(
-        _match_size(left[:count], frequency_std, count - int(problem.prior.is_free.sum()), LEAST_SCATTER.frequency),
-        _match_size(within, measured.std / measured.damping_ratio, count - numbers.size, LEAST_SCATTER.damping),
+        _estimate_scatter(
+            left[:count], rows.slope[:count], rows.unknown[:count], frequency_std, LEAST_SCATTER.frequency
+        ),
+        _estimate_scatter(ratio, groups, np.array(unknown).T, ratio_std, LEAST_SCATTER.damping),
         max(float(np.sqrt(np.mean(shape**2))), LEAST_SCATTER.shape) if shape.size else 1.0,
     )
 
 
-def _match_size(residual: RealArray, noise: RealArray, freedom: int, smallest: float) -> float:
-    """Scatter s for which the sum of residual^2 / (noise^2 + s^2) is the number of degrees of freedom."""
+def _estimate_scatter(
+    values: RealArray, columns: RealArray, unknown: RealArray, noise: RealArray, smallest: float
+) -> float:
+    """Most likely scatter of values beside their noise, by the restricted likelihood [2].
 
-    def excess(scatter: float) -> float:
-        return float(np.sum(residual**2 / (noise**2 + scatter**2))) - max(freedom, 1)
-
-    largest = float(np.sqrt(np.sum(residual**2))) + smallest
-    return smallest if excess(smallest) <= 0 else float(scipy.optimize.brentq(excess, smallest, largest))
+    Args:
+        values: Values, (n,).
+        columns: Columns, (n, t), which are fitted to the values with the weights 1 / (noise^2 + scatter^2). Other
+            weights would let the noise of one value into the residuals of all.
+        unknown: Columns, (n, q), whose coefficients are normal with a standard deviation of 1.
+        noise: Standard deviations of the values without the scatter, (n,).
+        smallest: Smallest scatter.
+    """
+    largest = float(np.sqrt(np.sum(values**2))) + 2 * smallest
+    trials, likelihood = np.geomspace(smallest / 10, largest, SCATTER_TRIALS), []
+    held = np.eye(unknown.shape[1], unknown.shape[1] + columns.shape[1] + 1)
+    for trial in trials:
+        deviation = np.hypot(noise, trial)
+        rows = np.column_stack([unknown, columns, values]) / deviation[:, None]
+        sizes = np.abs(np.diag(np.linalg.qr(np.vstack([rows, held]), mode="r")))
+        sizes[:-1] = np.log(
+            np.maximum(sizes[:-1], np.finfo(float).tiny)
+        )  # a property without effect has a column of zeros
+        likelihood.append(-np.sum(np.log(deviation)) - np.sum(sizes[:-1]) - sizes[-1] ** 2 / 2)
+    return max(float(trials[np.argmax(likelihood)]), smallest)
 
 
 def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> JointFit:
@@ -269,7 +312,13 @@ def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> Join
     moved = problem.factors.copy()
     moved[free] += np.clip((scale * solution)[: len(own)], -LARGEST_STEP, LARGEST_STEP)
     residual, scaled = rows.target - matrix @ (scale * solution), matrix[ratio] * scale
-    groups = np.unique(problem.linear.matched.measured.group[used])
+    measured = problem.linear.matched.measured.select(used)
+    groups = np.unique(measured.group)
+    freedom = max(used.size - groups.size, 1)
+    weight = 1 / (measured.std**2 + (scatter.damping * measured.damping_ratio) ** 2)
+    share = (scatter.damping * measured.damping_ratio) ** 2 * weight
+    # A mode tells of the scatter by its share in the variance of the mode; the rest is noise.
+    known_by = max(float(np.sum(share**2)) * freedom / used.size, 1.0)
     return JointFit(
         linear=problem.linear,
         factors=moved,
@@ -280,7 +329,8 @@ def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> Join
         ratio_covariance=rows.covariance[ratio, ratio] - scaled @ narrow @ scaled.T,
         frequency_residual=residual[: used.size],
         scatter=scatter,
-        freedom=max(used.size - groups.size, 1),
+        freedom=freedom,
+        ratio_freedom=known_by / max(float(share @ weight / weight.sum()), 0.01) ** 2,
         misfit=misfit,
     )
 

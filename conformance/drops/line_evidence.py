@@ -29,9 +29,9 @@ DETERMINED = 0.7
 """Largest standard deviation of a determined property over that of its prior [-]: half of the variance."""
 
 
-def quantile_95(fit: JointFit) -> float:
-    """Half of a 95 % interval in standard deviations, by Student's distribution for the found scatter."""
-    return float(scipy.stats.t.ppf(0.975, fit.freedom))
+def quantile_95(freedom: float) -> float:
+    """Half of a 95 % interval in standard deviations, by Student's distribution for a variance that was estimated."""
+    return float(scipy.stats.t.ppf(0.975, freedom))
 
 
 def list_properties(fit: JointFit, prior: Prior) -> tuple[FittedProperty, ...]:
@@ -39,7 +39,7 @@ def list_properties(fit: JointFit, prior: Prior) -> tuple[FittedProperty, ...]:
     rows = []
     for number, place in enumerate(np.flatnonzero(prior.is_free)):
         std, tolerance = np.sqrt(fit.covariance[number, number]), np.sqrt(prior.covariance[place, place])
-        factor, width = float(fit.factors[place]), quantile_95(fit) * float(std)
+        factor, width = float(fit.factors[place]), quantile_95(fit.freedom) * float(std)
         rows.append(
             FittedProperty(
                 name=prior.parameters[place].name,
@@ -86,7 +86,7 @@ def _list_refuted(fit: JointFit, prior: Prior, line: Catenary) -> Iterator[LineD
     statistic = float(weighted @ np.linalg.pinv(of_data, rcond=1e-6, hermitian=True) @ weighted)
     if scipy.stats.f.sf(statistic / len(places), len(places), fit.freedom) < LEVEL:
         for place, shift, deviation in zip(places, change, std, strict=True):
-            if abs(shift) > max(REFUTED_TENSION, quantile_95(fit) * deviation):
+            if abs(shift) > max(REFUTED_TENSION, quantile_95(fit.freedom) * deviation):
                 kind = prior.parameters[place].name.removesuffix("_tension")
                 stated = next(wire.tension for wire in line.wires if wire.kind == kind)
                 yield LineDifference(
@@ -128,5 +128,5 @@ def assess_groups(fit: JointFit) -> tuple[GroupResidual, ...]:
 def build_intervals(fit: JointFit) -> tuple[RealArray, RealArray]:
     """Ends of the 95 % intervals of the coefficients, (t,); a coefficient is never negative."""
     count = fit.values.size
-    width = quantile_95(fit) * np.sqrt(np.diag(fit.covariance)[-count:])
+    width = quantile_95(fit.ratio_freedom) * np.sqrt(np.diag(fit.covariance)[-count:])
     return np.maximum(fit.values - width, 0.0), fit.values + width

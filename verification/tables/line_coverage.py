@@ -71,13 +71,17 @@ def plant_errors(line: Catenary, random: np.random.Generator) -> tuple[Catenary,
     """Built line, and the factors of its properties on the stated ones."""
     factors = 1 + TOLERANCES * random.standard_normal(len(MECHANICAL))
     factors[:2] = 1 + random.uniform(-TENSION_ERROR, TENSION_ERROR, 2)
-    built = scale_line(line, MECHANICAL, factors.tolist())
+    return soften_droppers(scale_line(line, MECHANICAL, factors.tolist()), random), factors
+
+
+def soften_droppers(line: Catenary, random: np.random.Generator) -> Catenary:
+    """Line with half the stiffness in three droppers."""
     wrong = set(random.choice(len(line.droppers), 3, replace=False).tolist())
     droppers = (
         replace(dropper, stiffness=(dropper.stiffness or 0.0) / 2) if number in wrong else dropper
-        for number, dropper in enumerate(built.droppers)
+        for number, dropper in enumerate(line.droppers)
     )
-    return replace(built, droppers=tuple(droppers)), factors
+    return replace(line, droppers=tuple(droppers))
 
 
 def measure_modes(line: Catenary, random: np.random.Generator, element: float = ELEMENT) -> tuple[Mode, ...]:

@@ -27,7 +27,6 @@ from pantocheck.conformance.drops.joint_fit import JointFit, fit_jointly, solve_
 from pantocheck.conformance.drops.line_evidence import build_intervals
 from pantocheck.conformance.drops.line_fit import UNCERTAIN
 from pantocheck.conformance.drops.mode_groups import assign_groups
-from pantocheck.conformance.line.line_parameters import MECHANICAL
 from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 from pantocheck.model import Kind
 from pantocheck.model.modal.modes import deflection_at
@@ -159,8 +158,7 @@ def sample_fit(line: SampledLine, scatter: float, random: np.random.Generator) -
     """Fit of sampled modes; the relative scatter of the line model adds to their noise."""
     linear, prior = line.fit.linear, FitOptions().build_prior(("tensions",))
     matched, p = linear.matched, len(linear.matched.pairs)
-    tolerance = np.array([parameter.tolerance for parameter in MECHANICAL])
-    change = tolerance * random.standard_normal(len(MECHANICAL))
+    change = np.sqrt(np.diag(prior.covariance)) * random.standard_normal(len(prior.parameters))
     # The fit is linear about the true tensions; other properties are not those that it assumes.
     factors, other = np.where(prior.is_free, 1 + change, 1.0), np.where(prior.is_free, 0.0, change)
     noise = np.linalg.cholesky(line.covariance) @ random.standard_normal(2 * p)
