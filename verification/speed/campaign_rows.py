@@ -25,7 +25,7 @@ from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign
 from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_store import open_store
-from pantocheck.conformance.campaigns.run_executors import WORKER_SETTINGS, DaskExecutor, Execute, call_execution
+from pantocheck.conformance.campaigns.run_executors import CLUSTER_SETTINGS, DaskExecutor, Execute, call_execution
 from pantocheck.conformance.core.processes import delay_garbage_searches
 
 QUANTITIES = {f"1.quantity_number_{i}_N": 1.23456789012345 + i for i in range(90)}
@@ -87,7 +87,7 @@ def compare_real_runs(count: int) -> None:
     place = {"n_workers": WORKERS, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
     print("| round | runs | one after another [s] | on two workers [s] | ratio | wall time [s] |")
     print("|--:|--:|--:|--:|--:|--:|")
-    with dask.config.set(WORKER_SETTINGS), LocalCluster(**place) as cluster, Client(cluster) as client:
+    with dask.config.set(CLUSTER_SETTINGS), LocalCluster(**place) as cluster, Client(cluster) as client:
         client.run(call_execution, execute, first)
         start = statistics.mean(client.run(time.process_time).values())
         for number in range(ROUNDS):
