@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import Evaluation, SectionEvaluations, evaluate_signals
 from pantocheck.conformance.quantities.filters import Filter
-from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M, LineSignals, has_gaps
+from pantocheck.conformance.quantities.line_signals import RUN_OUT_M, UPLIFT_STRETCH_M, LineSignals, has_gaps
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
@@ -155,7 +155,9 @@ def prepare_record(
     for row in range(samples.force.shape[0]):
         pantographs[row + 1], remarks = _prepare_pantograph(placed, row, settings)
         warnings += remarks
-    line, remarks = _prepare_line(placed, section)
+    # The run of a case ends where the case says, often one span behind its section.
+    run_out = UPLIFT_STRETCH_M if sidecar.case is None else RUN_OUT_M
+    line, remarks = _prepare_line(placed, section, run_out)
     train = extend_train(time, position, nominal)
     alignments = tuple(align_source(source, train) for source in samples.sources.uplift)
     lines = [join_uplift(line, alignments, train, side) for side in (0, -1, 1)]
@@ -264,7 +266,7 @@ def _outlier_warnings(force: RealArray, position: RealArray, name: str) -> list[
     ]
 
 
-def _prepare_line(placed: PlacedSamples, section: tuple[float, float]) -> tuple[LineSignals, list[str]]:
+def _prepare_line(placed: PlacedSamples, section: tuple[float, float], run_out: float) -> tuple[LineSignals, list[str]]:
     """Uplift of the supports where no value that counts is missing, and warnings."""
     supports, uplift = placed.samples.support_position, placed.samples.uplift
     if uplift is None or supports is None:
@@ -276,17 +278,17 @@ def _prepare_line(placed: PlacedSamples, section: tuple[float, float]) -> tuple[
             f"{format_share(missing)} of the uplift is missing; supports with missing values that count are not "
             "evaluated"
         )
-    lost = np.array([_has_lost_samples(place, placed) for place in supports])
+    lost = np.array([_has_lost_samples(place, placed, run_out) for place in supports])
     complete = ~has_gaps(supports, uplift, last_position) & ~lost
     line = LineSignals(section, supports[complete], uplift[complete], last_position=last_position)
     return refuse_faulty_uplift(line, placed.position), warnings
 
 
-def _has_lost_samples(place: float, placed: PlacedSamples) -> bool:
-    """Whether a record has a gap at the passage of a support [m], or ends too early behind it, as of a source."""
+def _has_lost_samples(place: float, placed: PlacedSamples, run_out: float) -> bool:
+    """Whether a record has a gap at the passage of a support [m], or ends before a distance behind it [m]."""
     first, last = placed.position.max(axis=0), placed.position.min(axis=0)
     steps = np.diff(placed.time)[(first[1:] >= place - UPLIFT_STRETCH_M) & (last[:-1] <= place + UPLIFT_STRETCH_M)]
-    ends = not steps.size or last[-1] < place + UPLIFT_STRETCH_M
+    ends = not steps.size or last[-1] < place + run_out
     return bool(ends or steps.max() > GAP_STEPS * np.median(steps))
 
 
