@@ -9,6 +9,7 @@ from helpers.example_passage import with_passage
 from helpers.example_results import example
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.case_facts_format import BaselineComparison
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.results.procedure_format import Evidence
 from pantocheck.conformance.results.results_format import CaseConformity, Results
 
@@ -19,6 +20,13 @@ def test_case_without_a_key_of_its_verdict_is_refused(key: str) -> None:
     del results["cases"][0][key]
     with pytest.raises(ValidationError, match=key):
         Results.model_validate(results)
+
+
+def test_mode_with_an_infinite_frequency_is_refused() -> None:
+    mode = {"frequency_Hz": 1.0, "damping_ratio": 0.01, "damping_ratio_std": 1e-4, "sensor_shape": ()}
+    assert Mode.model_validate(mode).frequency_Hz == 1.0
+    with pytest.raises(ValidationError, match="finite"):
+        Mode.model_validate(mode | {"frequency_Hz": float("inf")})
 
 
 def test_evidence_that_does_not_state_a_pass_has_none() -> None:
