@@ -92,8 +92,11 @@ def test_points_lie_at_their_data_and_texts_stay_texts() -> None:
     panel.name_axes("x", "y")
     panel.add_legend(2)
     root = ElementTree.fromstring(figure.write())
-    texts = [text.text for text in root.iter("{http://www.w3.org/2000/svg}text")]
-    assert {"a < b & c", "band", "<script>", "&", "x", "y"} <= set(texts)
+    x = {text.text: float(text.get("x", "")) for text in root.iter("{http://www.w3.org/2000/svg}text")}
+    assert {"a < b & c", "band", "<script>", "&", "x", "y"} <= set(x)
+    # Space between the columns, handle and gap of a legend, in font sizes.
+    space = measure_text("a < b & c", 7.5) + (1.4 + 2.2 + 0.8) * 7.5
+    assert x["band"] - x["a < b & c"] == pytest.approx(space, abs=0.01)
     # The panel is 72 pt wide and 36 pt high; its left upper corner is at (36, 18).
     [curve] = [path for path in root.iter() if path.get("d") == "M36 54L72 18L108 36"]
     assert curve.get("stroke") == "#000000"
