@@ -29,6 +29,9 @@ REST_TOLERANCE_M = 2e-3
 REST_SHARE = 0.02
 """Accepted rest as a share of the rise: waves ahead of the train scale with it, and so does a wrong unit."""
 
+START_SHARE = 0.1
+"""The same at the start of a run that begins nearer to a support, whose pantographs lift the wire there."""
+
 NOISE_DEVIATIONS = 3.0
 """Accepted rest in standard deviations of the noise, if this is more."""
 
@@ -93,9 +96,9 @@ def find_inversion(support: float, uplift: RealArray, first: RealArray, last: Re
 def _list_other_faults(
     support: float, uplift: RealArray, first: RealArray, last: RealArray, whole: bool
 ) -> Iterator[str]:
-    rest = _find_rest(support, uplift, first)
+    rest, share = _find_rest(support, uplift, first), REST_SHARE
     if whole and not rest.size:
-        rest = uplift[:1][np.isfinite(uplift[:1])]
+        rest, share = uplift[:1][np.isfinite(uplift[:1])], START_SHARE
     passing = _find_passing(support, uplift, first, last, UPLIFT_STRETCH_M)
     if passing.size and is_overloaded(passing):
         top = 1e3 * passing.max()
@@ -105,7 +108,7 @@ def _list_other_faults(
         yield f"the uplift at {support:g} m has no rest, {near:g} to {far:g} m before the passage, from which it counts"
         return
     level = float(np.median(rest))
-    tolerance = max(_find_tolerance(rest), REST_SHARE * float(passing.max(initial=level) - level))
+    tolerance = max(_find_tolerance(rest), share * float(passing.max(initial=level) - level))
     if abs(level) > tolerance:
         yield (
             f"the uplift at {support:g} m is {1e3 * level:.3g} mm at rest, before the passage, and not 0 within "
