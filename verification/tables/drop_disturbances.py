@@ -69,7 +69,7 @@ def disturb(record: DropRecord, disturbance: Disturbance, truth: list[dict], see
         signals = read_by_clocks(signals, rates, np.zeros(rates.size), record.rate)
     if disturbance.wind:
         shape = np.array([mode["shape_re"] for mode in truth]).T
-        omega, ratio = 2 * np.pi * np.array([(mode["f_hz"], mode["zeta"] / (2 * np.pi)) for mode in truth]).T
+        omega, ratio = 2 * np.pi * np.array([(mode["f_record_hz"], mode["zeta"] / (2 * np.pi)) for mode in truth]).T
         poles = omega * (-ratio + 1j * np.sqrt(1 - ratio**2))
         signals[:, vertical] += move_by_wind(poles, shape, random, n, disturbance.wind, record.rate)[0]
     if disturbance.coloured:
