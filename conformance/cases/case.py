@@ -243,10 +243,11 @@ class Case:
         return replace(self, file=self.file.model_copy(update={"limit": ()}), limits=())
 
     def with_reading(self, reading: Reading) -> "Case":
-        """Same case with another reading of its evaluation as its own."""
+        """Same run of the case with another reading of its evaluation as its own."""
         changes: dict[str, object] = {} if reading.filter is None else {"filter": reading.filter}
         if reading.evaluated_m is not None:
             changes |= {"evaluated_m": reading.evaluated_m, "evaluated_spans": None, "compared_spans": None}
+            changes["run_out_m"] = self.end - reading.evaluated_m[1]
         return replace(self, file=self.file.model_copy(update={**changes, "reading": ()}))
 
     def without_study(self) -> "Case":

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import ChannelMissing, SupportsMissing
 
+LONGEST_STEP_M = 2.5
+"""Longest distance between two samples of a whole stretch [m]: the rest before a passage has at least 20."""
+
 SUPPORT_TOLERANCE_M = 0.5
 """Largest distance between the stated and the real position of a support [m].
 
@@ -121,7 +124,7 @@ class LineSignals:
         end, place = max(pairs, key=lambda pair: float(pair[1] - pair[0]))
         needed = place + RUN_OUT_M
         if self.run_end is not None:
-            needed = max(needed, min(place + UPLIFT_STRETCH_M, self.run_end - SUPPORT_TOLERANCE_M))
+            needed = max(needed, min(place + UPLIFT_STRETCH_M, self.run_end - LONGEST_STEP_M))
         if not end >= needed:
             raise SupportsMissing(
                 f"the record ends at {end:.6g} m; for the largest uplift of the support at {place:g} m "

@@ -12,16 +12,18 @@ from dataclasses import replace
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M, LineSignals, supports_inside
+from pantocheck.conformance.quantities.line_signals import (
+    LONGEST_STEP_M,
+    UPLIFT_STRETCH_M,
+    LineSignals,
+    supports_inside,
+)
 from pantocheck.conformance.records.clock_join import NEIGHBOURHOOD_M
 from pantocheck.conformance.records.force_checks import find_clipping
 from pantocheck.conformance.records.record_resolution import find_step
 
 REST_M = (100.0, 150.0)
 """Distances of the first pantograph before a support between which the wire there is at rest [m]."""
-
-LONGEST_STEP_M = 2.5
-"""Longest distance between two samples of a rest [m], so that it has at least 20."""
 
 REST_TOLERANCE_M = 2e-3
 """Accepted rest beside 0 [m]; the largest of the simulated cases of the library is 0.40 mm, and sensors drift."""
