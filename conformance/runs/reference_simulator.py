@@ -46,7 +46,7 @@ AT_REST_S = 4.0
 Task = Callable[[ShareCallback], Sequence[Delivered]]
 """Runs of a case on another mesh, or from other starts together."""
 StepNames = tuple[str, ...]
-"""StepNames of the steps of a task."""
+"""Names of the steps of a task."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import pytest
 from pantocheck.conformance.app.commands.drop_identify_command import choose_groups
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.damping_results import FitOptions, build_damping_results
-from pantocheck.conformance.line.line_parameters import MECHANICAL, scale_line
+from pantocheck.conformance.line.line_parameters import BENDING, MECHANICAL, scale_line
 from pantocheck.conformance.pages.damping_page import build_damping_document
 from pantocheck.conformance.results.damping_format import DampingResults
 from pantocheck.conformance.results.identified_modes import Mode
@@ -121,6 +121,15 @@ def test_a_group_that_the_wires_do_not_explain_is_named(line: Catenary) -> None:
     quiet = {row.group: row for row in fit(modes, line, "tensions").groups}
     assert all(row.explained and abs(row.mean) < 0.01 for row in quiet.values())
     assert {row.group: row for row in results.groups}[3].mean > 0.015
+
+
+def test_bending_stiffness_is_not_taken_for_tension(line: Catenary) -> None:
+    """A messenger wire 1.8 times as stiff: an exact stiffness would move both tensions out of their intervals."""
+    stiff = scale_line(line, BENDING, (1.0, 1.8))
+    results = fit(measure_modes(stiff, np.random.default_rng(13)), line, "tensions")
+    assert all(row.determined for row in results.properties)
+    assert all(low <= 1 <= high for _, low, _, high in list_intervals(results, np.ones(6)))
+    assert results.line.refuted == ()
 
 
 def test_tolerances_decide_what_a_mode_weighs(line: Catenary) -> None:

@@ -107,11 +107,11 @@ def test_keys_of_supports_do_not_appear_in_the_stored_form_of_other_lines() -> N
         ({"support": [{"number": 2}, {"number": 2}]}, "geometry.support[2].number: support 2 is listed twice"),
         (
             {"support": [{"number": 4, "steady_arm": {"length_m": 1.0}}]},
-            "geometry.support[1].steady_arm (number 4): 4 is an end of the line",
+            "geometry.support[1].steady_arm (number 4): support 4 is an end of the line",
         ),
         (
             {"support": [{"number": 0, "messenger_support": {"stiffness_N_m": 1e5}}]},
-            "geometry.support[1].messenger_support (number 0): 0 is an end of the line",
+            "geometry.support[1].messenger_support (number 0): support 0 is an end of the line",
         ),
         ({"support": [{"number": 3, "stagger_m": 0.2}]}, "geometry.support[1].stagger_m (number 3): unknown key"),
         ({"support": [{"number": 2, "encumbrance_m": 0.0}]}, "support[1].encumbrance_m (number 2): 0 must be greater"),

@@ -70,7 +70,7 @@ def test_fixed_value_is_written_and_a_needless_mass_warned_of(folder: Path) -> N
     ("arguments", "message"),
     [
         (["--masses", "5"], "Invalid value for '--masses'"),
-        (["--fix", "masses_kg.1=15"], "--fix: given without a number of masses"),
+        (["--fix", "masses_kg.1=15"], "--fix: is given without a number of masses"),
         (["--masses", "2", "--fix", "masses_kg.3=15"], "--fix: there is no parameter 'masses_kg.3'"),
         (["--masses", "2", "--fix", "masses_kg.1=x"], "--fix: masses_kg.1 has the value 'x'"),
         (["--masses", "2", "--fix", "masses_kg.1=0"], "--fix: masses_kg.1 has the value '0'"),

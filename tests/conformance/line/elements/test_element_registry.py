@@ -28,6 +28,7 @@ from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_columns import SUPPORT_COLUMNS
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model import Catenary, Kind
+from pantocheck.model.description.catenary import Wire
 
 PRODUCT = Path(elements.__path__[0]).parents[1]
 """Folder `conformance`."""
@@ -70,7 +71,7 @@ def list_own_words(element: type[Element]) -> Iterator[tuple[str, str]]:
     """Compound names of an element with their files: keys, derived keys and features that the model does not have."""
     keys, file = [key for key in element.__annotations__ if key in element.model_fields], name_file(element)
     features = [item for key in keys for item in list_declared_features(element.model_fields[key].annotation)]
-    of_model = {kind.value for kind in Kind} | {field.name for field in fields(Catenary)}
+    of_model = {kind.value for kind in Kind} | {field.name for model in (Catenary, Wire) for field in fields(model)}
     named = [*((key, file) for key in (*keys, *element.derived)), *features, *((name, file) for name, _ in features)]
     return ((name, place) for name, place in named if "_" in name and name not in of_model)
 
