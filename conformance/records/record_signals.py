@@ -79,6 +79,11 @@ class RecordSignals(SectionEvaluations):
         )
 
 
-def evaluate_record(record: Record, low_pass: Filter, line_supports: tuple[float, ...] | None = None) -> Evaluation:
+def evaluate_record(
+    record: Record,
+    low_pass: Filter,
+    line_supports: tuple[float, ...] | None = None,
+    run: tuple[float, float] | None = None,
+) -> Evaluation:
     """Evaluate every quantity of a record over its analysis section; see `RecordSignals`."""
-    return RecordSignals(record, low_pass, line_supports).evaluation
+    return RecordSignals(record, low_pass, line_supports, run=run).evaluation

@@ -88,13 +88,13 @@ def run_damping_sensitivity(case: Case, system: System) -> Outcome:
         outcome = system.run(case.without_study())
     if not isinstance(outcome, Delivered) or outcome.record is None:
         return outcome
-    low_pass, supports = case.file.filter, case.line.geometry.supports
-    values, missing = {CASE_DAMPING: evaluate_record(outcome.record, low_pass, supports).values}, []
+    settings = case.file.filter, case.line.geometry.supports, (case.start_positions[0], case.end)
+    values, missing = {CASE_DAMPING: evaluate_record(outcome.record, *settings).values}, []
     for number, (name, damping) in enumerate(case.dampings.items()):
         with use_part((REFINED_RUN + number) / whole, (REFINED_RUN + number + 1) / whole):
             run = _run_unrefined(system, case.with_damping(name, damping))
         if isinstance(run, Delivered) and run.record is not None:
-            values[name] = evaluate_record(run.record, low_pass, supports).values
+            values[name] = evaluate_record(run.record, *settings).values
         else:
             missing.append(f"damping '{name}': {missing_record_reason(run)}")
     return replace(
