@@ -14,9 +14,9 @@ CODE = {".py", ".c", ".h", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
-    ("model", "conformance"): 96_450,
+    ("model", "conformance"): 96_449,
     ("templates",): 5_342,
-    ("verification",): 20_352,
+    ("verification",): 20_354,
     ("tests",): 64_085,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
