@@ -283,10 +283,8 @@ def _estimate_scatter(
         deviation = np.hypot(noise, trial)
         rows = np.column_stack([unknown, columns, values]) / deviation[:, None]
         sizes = np.abs(np.diag(np.linalg.qr(np.vstack([rows, held]), mode="r")))
-        sizes[:-1] = np.log(
-            np.maximum(sizes[:-1], np.finfo(float).tiny)
-        )  # a property without effect has a column of zeros
-        likelihood.append(-np.sum(np.log(deviation)) - np.sum(sizes[:-1]) - sizes[-1] ** 2 / 2)
+        logarithms = np.log(np.maximum(sizes[:-1], np.finfo(float).tiny))  # a property without effect has zeros only
+        likelihood.append(-np.sum(np.log(deviation)) - np.sum(logarithms) - sizes[-1] ** 2 / 2)
     return max(float(trials[np.argmax(likelihood)]), smallest)
 
 

@@ -169,7 +169,7 @@ def is_reference(case: CaseResult) -> bool:
 
 
 def _judge_case(case: CaseResult, as_reference: bool, accepted: bool) -> Verdict:
-    """Verdict of a case in its step: an own or changed case is not a reference model: its pass is information."""
+    """Verdict of a case in its step; the pass of an own or changed case, which is not a reference model, is `info`."""
     verdict: Verdict = "pass" if accepted and case.verdict == "unconfirmed" else case.verdict
     return worst_verdict([verdict, "info"]) if as_reference and not is_reference(case) else verdict
 
