@@ -1,7 +1,7 @@
 """Damping study of a case: one column of the table per damping model."""
 
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Literal
 
@@ -43,6 +43,29 @@ def test_every_model_has_its_column(case_250: Case, wave: type[Wave], monkeypatc
     assert rows["std_force_N", "pantograph 1"] == ["30", "30", "43.5", f"{20 + 1e5 * updated:.4g}"]
     assert rows["max_uplift_at_support_mm", "line"] == ["50", "50", "50", "50"]
     assert len(result.charts) == 1
+
+
+def test_uplift_is_read_over_the_run_of_the_case(case_250: Case, wave: type[Wave]) -> None:
+    """A run may begin 80 m before its first support, where its wire is at rest; a record may not end 10 m behind the last.
+
+    Without a run, a record needs its rest 100 to 150 m before each support, and 5 m behind the last.
+    """
+
+    @dataclass(frozen=True)
+    class Cut(Wave):
+        def run(self, case: Case) -> Delivered:
+            record = super().record(case)
+            kept = record.position[0] < (case.analysis_section[1] + 10 if case.id.endswith("/initial") else case.end)
+            cut = {name: getattr(record, name)[:, kept] for name in ("position", "force", "support_uplift")}
+            return Delivered(replace(record, time=record.time[kept], contact_height=None, **cut))
+
+    start = case_250.analysis_section[0] - 80
+    near = replace(case_250, file=case_250.file.model_copy(update={"start_m": start}))
+    outcome = damping_sensitivity.run_damping_sensitivity(add_damping_study(near), Cut())
+    assert isinstance(outcome, Delivered)
+    assert outcome.study is not None
+    (row,) = (row for row in outcome.study.tables[0].rows if row[0] == "max_uplift_at_support_mm")
+    assert row == ["max_uplift_at_support_mm", "line", "50", "50", "-", "50"]
 
 
 def test_study_changes_no_grade_and_is_for_passages_alone(case_250: Case, wave: type[Wave]) -> None:

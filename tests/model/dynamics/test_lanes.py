@@ -56,12 +56,15 @@ def list_groups() -> Iterator[tuple[str, DiscretisedLine, list[Passage]]]:
         replace(WINDOW, pantographs=with_law(contact_stiffness=np.inf, hertz_coefficient=1.2e7)),
     ]
     yield "windows", discretise(ROUGH, 1.0), varied
-    across = replace(WINDOW, start=(220.0, 200.0), reach=60.0)  # windows of several panels, some end before others
-    yield "panels", discretise(ROUGH, 0.4), [change(across, 3.0 * k - 9.0) for k in range(8)]
+    # Windows of several panels; in moving stations, some end at 295 m with the second panel, before others.
+    across = replace(WINDOW, speed=60.0, reach=30.0, watched=(("contact", 295.0), ("messenger", 295.0)))
+    starts = [(238.0 + 3.0 * k, 218.0 + 3.0 * k) for k in range(8)]
+    yield "panels", discretise(ROUGH, 0.4), [replace(across, start=start) for start in starts]
     heads = replace(WINDOW, pantographs=tuple(map(structured, PAIR)), start=(30.0, 18.0), watched=(), ramp=0.1)
     yield "strips and stagger", zigzag_line(), [change(heads, 2.0 * k) for k in range(8)]
     above = replace(WINDOW, start=(80.0, 66.0), watched=(), kept_behind=np.inf)
-    yield "overlap", discretise(overlapping_line(), 2.0), [change(above, 2.0 * k) for k in range(8)]
+    dense = simple_line(droppers=tuple(np.arange(1.0, 60.0)))  # such droppers settle slowly: some lanes before others
+    yield "overlap", discretise(overlapping_line(section=dense), 2.0), [change(above, 2.0 * k) for k in range(8)]
 
 
 GROUPS = {name: (line, passages) for name, line, passages in list_groups()}
