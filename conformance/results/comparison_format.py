@@ -106,10 +106,10 @@ class ComparedValues(RoundedModel):
     """Rows without this value."""
     outlier_rows: tuple[int, ...]
     """Rows whose difference lies far from that of the other rows; they count."""
-    mean_difference: Rounded
-    """Mean of model minus measurement, evaluated section."""
-    rms_difference: Rounded
-    """RMS of model minus measurement, evaluated section."""
+    mean_difference: Rounded | None
+    """Mean of model minus measurement, evaluated section; null: no value in it."""
+    rms_difference: Rounded | None
+    """RMS of model minus measurement, evaluated section; null: no value in it."""
     spans: tuple[SpanDifferences, ...]
     curve_position_m: tuple[Rounded, ...]
     """Positions along the spans with values."""

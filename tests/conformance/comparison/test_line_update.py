@@ -16,7 +16,7 @@ from helpers.toml_edit import edit_toml, write_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.comparison.line_update import begin_estimate, update_linear
+from pantocheck.conformance.comparison.line_update import begin_estimate, build_updated_line, update_linear
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.line.catenary_model import build_catenary
@@ -256,6 +256,15 @@ def test_linear_update_is_the_posterior_of_a_normal_model() -> None:
     far = update_linear(estimate, "test", predict, [0], np.array([0.3, 0.3]), std, 1)
     assert far.data[0].misfit > 10
     assert found.covariance[0, 0] < far.covariance[0, 0] < estimate.covariance[0, 0]
+
+
+def test_stiffer_steady_arm_is_a_shorter_one() -> None:
+    """The stiffness of an arm that is described by its length is the radial force over the length: halved by 2.0."""
+    line = read_model(library_folder() / "en50318-2018" / "ac-simple" / "line.toml", LineFile, "line")
+    begun = begin_estimate(line)
+    factors = np.array([2.0 if each.name == "steady_arm_stiffness" else 1.0 for each in begun.parameters])
+    tree = build_updated_line(line, replace(begun, factors=factors), None)
+    assert tree["steady_arm"]["length_m"] == pytest.approx(line.steady_arm.length_m / 2, rel=1e-7)  # eight digits
 
 
 def test_update_without_measurements_is_refused(tmp_path: Path) -> None:

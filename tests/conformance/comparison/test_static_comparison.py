@@ -157,6 +157,9 @@ def test_missing_values_leave_the_criterion_open_and_are_named_with_outliers(
     assert len(compare(tmp_path, columns, {}, **COMPLETE).warnings) == 2
     comparison = compare(tmp_path, computed, {}, **COMPLETE)
     assert (comparison.verdict, comparison.criteria) == ("info", ())
+    outside = {name: values[:5] for name, values in computed.items()}  # 1.5 to 25.5 m, in span 1
+    (none, _) = compare(tmp_path, outside, {}, **COMPLETE).values
+    assert (none.mean_difference, none.rms_difference) == (None, None)
 
 
 @pytest.mark.parametrize(

@@ -46,9 +46,9 @@ def test_every_model_has_its_column(case_250: Case, wave: type[Wave], monkeypatc
 
 
 def test_uplift_is_read_over_the_run_of_the_case(case_250: Case, wave: type[Wave]) -> None:
-    """A run may begin 80 m before its first support, where its wire is at rest; a record may not end 10 m behind the last.
+    """A run may begin 80 m before its first support; its record may not end 10 m behind the last one.
 
-    Without a run, a record needs its rest 100 to 150 m before each support, and 5 m behind the last.
+    Without a run, a record needs its rest 100 to 150 m before each support, and 5 m behind the last one.
     """
 
     @dataclass(frozen=True)
