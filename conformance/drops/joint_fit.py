@@ -86,6 +86,9 @@ program computed, differ by this much once the bending stiffness is found; the e
 a smaller scatter of the frequencies would take them for tensions. Chosen after the errors of T1 had been seen.
 """
 
+SAME_COLUMN = 1e-6
+"""Size below which a column lies in the span of the others [-]."""
+
 SCATTER_TRIALS = 60
 """Number of scatters whose likelihood is compared."""
 
@@ -248,9 +251,10 @@ def _find_scatter(problem: _Problem, fit: JointFit, used: IntegerArray) -> Scatt
     rows, count = problem.build_rows(used, fit.scatter), used.size
     left = problem.residual(fit, rows)
     measured = problem.linear.matched.measured.select(used)
-    groups = np.equal.outer(measured.group, np.unique(measured.group)).astype(float)
-    relative = np.column_stack([left[count : 2 * count], rows.unknown[count : 2 * count], measured.std])
-    ratio, *unknown, ratio_std = (relative / measured.damping_ratio[:, None]).T
+    damping = slice(count, 2 * count)
+    fitted = measured.damping_ratio - left[damping]
+    unknown = rows.unknown[damping] / fitted[:, None]
+    basis = _span_within_groups(rows.columns[damping] / fitted[:, None], measured.group)
     modes = [problem.linear.matched.paired[i] for i in used]
     frequency_std = np.array([(mode.frequency_std_Hz or 0.0) / mode.frequency_Hz for mode in modes])
     shape = left[2 * count :]
@@ -258,9 +262,19 @@ def _find_scatter(problem: _Problem, fit: JointFit, used: IntegerArray) -> Scatt
         _estimate_scatter(
             left[:count], rows.slope[:count], rows.unknown[:count], frequency_std, LEAST_SCATTER.frequency
         ),
-        _estimate_scatter(ratio, groups, np.array(unknown).T, ratio_std, LEAST_SCATTER.damping),
+        _estimate_scatter(left[damping] / fitted, basis, unknown, measured.std / fitted, LEAST_SCATTER.damping),
         max(float(np.sqrt(np.mean(shape**2))), LEAST_SCATTER.shape) if shape.size else 1.0,
     )
+
+
+def _span_within_groups(columns: RealArray, group: IntegerArray) -> RealArray:
+    """Orthonormal basis of columns of the modes, (n, t), and of the means of their groups: what a fit takes from them."""
+    means = np.equal.outer(group, np.unique(group)).astype(float)
+    vectors, sizes, _ = np.linalg.svd(
+        np.column_stack([means, columns / np.abs(columns).max(axis=0)]), full_matrices=False
+    )
+    # The fitted ratios over themselves are 1, which is a mean of groups.
+    return np.asarray(vectors[:, sizes > SAME_COLUMN * sizes[0]])
 
 
 def _estimate_scatter(
@@ -311,8 +325,9 @@ def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> Join
     moved[free] += np.clip((scale * solution)[: len(own)], -LARGEST_STEP, LARGEST_STEP)
     residual, scaled = rows.target - matrix @ (scale * solution), matrix[ratio] * scale
     measured = problem.linear.matched.measured.select(used)
-    groups = np.unique(measured.group)
-    freedom = max(used.size - groups.size, 1)
+    fitted = measured.damping_ratio - residual[ratio]
+    basis = _span_within_groups(rows.columns[ratio] / fitted[:, None], measured.group)
+    freedom = max(used.size - basis.shape[1], 1)
     weight = 1 / (measured.std**2 + (scatter.damping * measured.damping_ratio) ** 2)
     share = (scatter.damping * measured.damping_ratio) ** 2 * weight
     # A mode tells of the scatter by its share in the variance of the mode; the rest is noise.
