@@ -268,12 +268,11 @@ def _find_scatter(problem: _Problem, fit: JointFit, used: IntegerArray) -> Scatt
 
 
 def _span_within_groups(columns: RealArray, group: IntegerArray) -> RealArray:
-    """Orthonormal basis of columns of the modes, (n, t), and of the means of their groups: what a fit takes from them."""
+    """Orthonormal basis, (n, r), of the means of groups and of columns, (n, t): values that a fit removes."""
     means = np.equal.outer(group, np.unique(group)).astype(float)
-    vectors, sizes, _ = np.linalg.svd(
-        np.column_stack([means, columns / np.abs(columns).max(axis=0)]), full_matrices=False
-    )
-    # The fitted ratios over themselves are 1, which is a mean of groups.
+    both = np.column_stack([means, columns / np.abs(columns).max(axis=0)])
+    vectors, sizes, _ = np.linalg.svd(both, full_matrices=False)
+    # Relative columns times the coefficients are near 1, which is a sum of the means.
     return np.asarray(vectors[:, sizes > SAME_COLUMN * sizes[0]])
 
 

@@ -8,6 +8,7 @@ import pytest
 from pantocheck.conformance.app.commands.drop_identify_command import choose_groups
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.damping_results import FitOptions, build_damping_results
+from pantocheck.conformance.drops.joint_fit import _estimate_scatter, _span_within_groups
 from pantocheck.conformance.line.line_parameters import BENDING, MECHANICAL, scale_line
 from pantocheck.conformance.pages.damping_page import build_damping_document
 from pantocheck.conformance.results.damping_format import DampingResults
@@ -130,6 +131,32 @@ def test_bending_stiffness_is_not_taken_for_tension(line: Catenary) -> None:
     assert all(row.determined for row in results.properties)
     assert all(low <= 1 <= high for _, low, _, high in list_intervals(results, np.ones(6)))
     assert results.line.refuted == ()
+
+
+def test_scatter_counts_the_columns_of_the_wires() -> None:
+    """Twelve modes in three groups and two columns: 2000 scatters of 0.5 % beside a known noise of 0.2 %.
+
+    A restricted likelihood is unbiased in the variance, whose mean over 2000 draws of 7 degrees of freedom is known
+    within 1.2 % (one standard deviation); the grid of trials is 12 % wide. Without the columns the variance is
+    7 / 9 of the true one, if the residuals of the fit enter, as they do.
+    """
+    random = np.random.default_rng(50340)
+    group, columns = np.repeat([1, 2, 3], 4), np.abs(random.standard_normal((12, 2))) + 1
+    noise, basis = np.full(12, 0.002), _span_within_groups(columns, group)
+    assert basis.shape == (12, 5)
+    variances = []
+    for _ in range(2000):
+        values = 0.005 * random.standard_normal(12) + noise * random.standard_normal(12)
+        left = values - basis @ (basis.T @ values)
+        variances.append(_estimate_scatter(left, basis, np.zeros((12, 1)), noise, 1e-4) ** 2)
+    assert np.mean(variances) == pytest.approx(0.005**2, rel=0.06)
+
+
+def test_columns_that_add_up_to_a_group_mean_count_once() -> None:
+    """Relative columns of a fit add up to 1, so that two of them and two means span three directions."""
+    random = np.random.default_rng(7)
+    first = random.uniform(0.2, 0.8, 8)
+    assert _span_within_groups(np.column_stack([first, 1 - first]), np.repeat([1, 2], 4)).shape == (8, 3)
 
 
 def test_tolerances_decide_what_a_mode_weighs(line: Catenary) -> None:
