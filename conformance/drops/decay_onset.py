@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.drops.decay_preparation import PreparedDecay
+from pantocheck.conformance.drops.decay_preparation import REMEDY, PreparedDecay
 from pantocheck.conformance.drops.line_fit import UNCERTAIN, FittedBlock, LineFit
 from pantocheck.conformance.drops.pole_refinement import build_normal_equations
 from pantocheck.conformance.drops.projection import DataBlock, Noise, build_block, whiten
@@ -181,5 +181,5 @@ def refuse_onset(decay: PreparedDecay, found: DecayOnset) -> InputError:
         decay.record.name,
         f"is not a linear decay: the part from {decay.linear.start - decay.release.time:.0f} s after the release "
         f"{measured}",
-        "Record longer, or drop a smaller mass: as long as droppers slacken, no sum of decays fits.",
+        REMEDY,
     )

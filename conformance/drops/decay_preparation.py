@@ -259,6 +259,11 @@ def find_linear_decay(
     return _cut_record(record, filtered, (start, end), _build_evidence(course, dt), poles, warnings)
 
 
+REMEDY = (
+    "Record longer, or drop a smaller mass. Slack droppers are a frequent cause, which the record alone does not show."
+)
+"""Remedy of a record that no sum of decays fits."""
+
 REFUSED = 30.0
 """Power of the residual over that of the motion at rest, above which a record is refused [-]."""
 
@@ -281,7 +286,7 @@ def _require_calm(
             f"{end * dt:.0f} s after the release the residual from {band.low:g} to {band.fitted:g} Hz is "
             + ", ".join(f"{level:.0f}" for level in levels)
             + f" times {course.reference}, at {', '.join(channels)}",
-            "Record longer, or drop a smaller mass: as long as droppers slacken, no sum of decays fits.",
+            REMEDY,
         )
 
 

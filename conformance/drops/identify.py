@@ -12,6 +12,7 @@ from pantocheck.conformance.drops.classical_poles import find_classical_poles
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_onset import NO_DELAY, find_onset, move_onset, refuse_onset, restore_onset
 from pantocheck.conformance.drops.decay_preparation import (
+    REMEDY,
     LinearDecay,
     PreparedDecay,
     extend_decay,
@@ -233,7 +234,7 @@ def _require_certain(name: str, modes: tuple[Mode, ...]) -> None:
             name,
             f"determines {certain} of its {count_noun(len(modes), 'mode')}: the others have a standard deviation above "
             f"{100 * UNCERTAIN:g} % of the damping ratio",
-            "Record longer, or drop a smaller mass: as long as droppers slacken, no sum of decays fits.",
+            REMEDY,
         )
 
 
