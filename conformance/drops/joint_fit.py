@@ -117,8 +117,10 @@ class JointFit:
     """Scatter of the line model."""
     freedom: int
     """Degrees of freedom of the scatter of the damping ratios."""
-    ratio_freedom: float
-    """Degrees of freedom of the variance of the damping ratios, whose noise is known (Satterthwaite 1946)."""
+    coefficient_freedom: RealArray
+    """Degrees of freedom of the variances of the coefficients, to which noise and line add known parts (Satterthwaite
+    1946), (t,).
+    """
     misfit: float
     """Squared residual over its expectation [-]; above 1, it widens the covariance."""
 
@@ -327,10 +329,11 @@ def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> Join
     fitted = measured.damping_ratio - residual[ratio]
     basis = _span_within_groups(rows.columns[ratio] / fitted[:, None], measured.group)
     freedom = max(used.size - basis.shape[1], 1)
-    weight = 1 / (measured.std**2 + (scatter.damping * measured.damping_ratio) ** 2)
-    share = (scatter.damping * measured.damping_ratio) ** 2 * weight
+    of_scatter = (scatter.damping * measured.damping_ratio) ** 2
     # A mode tells of the scatter by its share in the variance of the mode; the rest is noise.
-    known_by = max(float(np.sum(share**2)) * freedom / used.size, 1.0)
+    known_by = max(float(np.sum((of_scatter / (of_scatter + measured.std**2)) ** 2)) * freedom / used.size, 1.0)
+    gain = narrow @ np.linalg.solve(rows.covariance, matrix * scale).T
+    share = (gain[:, ratio] ** 2 @ of_scatter / np.diag(narrow))[len(own) :]
     return JointFit(
         linear=problem.linear,
         factors=moved,
@@ -342,7 +345,7 @@ def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> Join
         frequency_residual=residual[: used.size],
         scatter=scatter,
         freedom=freedom,
-        ratio_freedom=known_by / max(float(share @ weight / weight.sum()), 0.01) ** 2,
+        coefficient_freedom=known_by / np.maximum(share, 0.01) ** 2,
         misfit=misfit,
     )
 

@@ -128,5 +128,6 @@ def assess_groups(fit: JointFit) -> tuple[GroupResidual, ...]:
 def build_intervals(fit: JointFit) -> tuple[RealArray, RealArray]:
     """Ends of the 95 % intervals of the coefficients, (t,); a coefficient is never negative."""
     count = fit.values.size
-    width = quantile_95(fit.ratio_freedom) * np.sqrt(np.diag(fit.covariance)[-count:])
+    quantile = np.array([quantile_95(freedom) for freedom in fit.coefficient_freedom.tolist()])
+    width = quantile * np.sqrt(np.diag(fit.covariance)[-count:])
     return np.maximum(fit.values - width, 0.0), fit.values + width
