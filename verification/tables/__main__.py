@@ -100,7 +100,7 @@ PROGRAMS = {
     "identification": Program("tables.identification", ("identification-scores",), "{drops} --made-up 6"),
     "disturbances": Program("tables.drop_disturbances", ("disturbances", "disturbances-tensions"), "{drops}"),
     "field-coverage": Program("tables.field_coverage", ("field-coverage", "field-modes"), "{docs}/field-records.csv"),
-    "sampled-modes": Program("tables.sampled_modes", ("sampled-modes",), "--draws 21"),
+    "sampled-modes": Program("tables.sampled_modes", ("sampled-modes",), "--draws 84"),
     "line-coverage": Program("tables.line_coverage", ("line-coverage",), "{docs}/line-fits.csv"),
     "line-hold-out": Program("tables.line_hold_out", ("line-hold-out",), "{docs}/line-hold-out.csv"),
     "network-detection": Program(
