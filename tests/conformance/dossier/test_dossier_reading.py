@@ -32,7 +32,7 @@ OTHER = {"name": "example line", "file": "line.toml"}
         ({"line.0.tolerance.source": None}, "line[1].tolerance.source", "missing, although the trust"),
         ({"line.0.tolerance.elasticity_pct": 1e6}, "line[1].tolerance.elasticity_pct", "10000"),
         ({"pantograph.0.limit.0.source": None}, "pantograph[1].limit[1].source", "missing, although the trust"),
-        ({"line_test.tolerance.0": {"quantity": "mean_force_N", "upper": 1.0}}, "line_test.tolerance", "a tolerance"),
+        ({"line_test.tolerance.0": {"quantity": "mean_force_N", "upper": 1}}, "line_test.tolerance[1]", "a tolerance"),
         ({"required": ["line_tests"]}, "required", "line_tests"),
         ({"pair.0.simulated": {"case": "run-160.toml"}}, "pair[1].simulated", "direction"),
         ({"sytem": "builtin"}, "sytem", "unknown key"),

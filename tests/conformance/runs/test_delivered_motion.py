@@ -97,6 +97,7 @@ def test_shapes_of_the_reference_simulator_come_back(case: Case, simulated: Deli
     [
         ({"time_s": None}, "data set time_s, is missing"),
         ({"time_s": np.arange(260) ** 2}, "not evenly spaced"),
+        ({"time_s": np.arange(260)[::-1] * 0.1}, "not evenly spaced"),  # backwards
         ({"time_s": np.arange(260) * 0.1}, "found frames from 0 s to 25.9 s"),
         ({"contact_wire_rise_m": np.zeros((3, 4))}, "has the shape (3, 4)"),
         ({"contact_wire_rise_m": "unit"}, "Give the rise over the line at rest in metres"),

@@ -247,6 +247,8 @@ def test_quantiles_of_times_are_those_of_the_counts() -> None:
 def test_limits_below_the_passage_and_other_cases_are_refused(line: SteppedPassage) -> None:
     with pytest.raises(InputError, match=r"(?s)limit of the travel: is 1 mm.*passage of the linear model needs"):
         check_limits(line, LIMITS._replace(travel=0.001))
+    with pytest.raises(InputError, match=r"limit of the speed: is 0\.001 m/s; "):
+        check_limits(line, LIMITS._replace(speed=0.001))
     with pytest.raises(InputError, match="a passage in steps has one linear pantograph with one strip"):
         build_stepped_passage(build_twin_case(), STEP_S)
 

@@ -1,6 +1,7 @@
 """Fit of a chain to measured responses: closed forms, published pantographs, intervals, choice of masses."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from pantocheck.conformance.pantograph.chain_fit import (
     compute_intervals,
     fit_chain,
     fit_chains,
+    information_criterion,
     judge_parameters,
 )
 from pantocheck.conformance.pantograph.chain_problem import ChainProblem, MeasuredStiffness, chain_response
@@ -198,6 +200,12 @@ def test_number_of_masses_is_found(tmp_path: Path, path: str, masses: int) -> No
     selection = fit_chains([record(tmp_path, read_pantograph(path))], FitTask(EVERY_ROW, None))
     assert (selection.best, selection.is_noise_stated) == (masses, True)
     assert selection.fits[masses].variance_ratio == pytest.approx(1, abs=0.3)
+
+
+def test_information_criterion_weighs_residuals_against_parameters() -> None:
+    """By hand: 100 ln(1 / 100) + 4 ln 100 = -96 ln 100, for 100 residuals whose squares add up to 1."""
+    fit: Any = SimpleNamespace(size=100, sum_of_squares=1.0, free_count=4)
+    assert information_criterion(fit) == pytest.approx(-96 * np.log(100), rel=1e-15)
 
 
 def test_responses_are_joined_in_the_band(tmp_path: Path) -> None:
