@@ -293,7 +293,7 @@ def _build_group(section: TrackSection, key: GroupClass, whole: Sequence[Section
         passages=len(whole),
         partial=partial,
         dates=(min(dates), max(dates)) if dates else (),
-        run=next((x.run for x in whole if x.verdict == verdict), whole[0].run) if whole else None,
+        run=next((x.run for x in whole if x.verdict == verdict), None),
         clocks="; ".join(dict.fromkeys(x.clocks for x in whole if x.clocks)),
         values={
             name: _repeat([(x.date.toordinal(), x.values[name]) for x in known])

@@ -96,11 +96,15 @@ def test_plan_that_does_not_fit_the_record_is_refused(
 
 def test_plan_file_names_unknown_keys_and_wrong_bands(tmp_path: Path) -> None:
     path = tmp_path / "plan.toml"
-    path.write_text("[[band]]\nfrom_Hz = 2.0\nto_Hz = 1.0\norders = 3\n", encoding="utf-8")
-    with pytest.raises(InputError):
-        read_identification_plan(path)
-    path.write_text('method = "classical"\n[[pole]]\nfrequency_Hz = 0.9\n', encoding="utf-8")
-    assert read_identification_plan(path).method == "classical"
+    pole = "[[pole]]\nfrequency_Hz = 1.0\ndamping_ratio = "
+    for text in ("[[band]]\nfrom_Hz = 2.0\nto_Hz = 1.0\norders = 3\n", f"{pole}1.0\n"):
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(InputError):
+            read_identification_plan(path)
+    path.write_text(f'method = "classical"\n{pole}0.6\n', encoding="utf-8")
+    plan = read_identification_plan(path)
+    assert plan.method == "classical"
+    assert plan.pole[0].pole == pytest.approx(2 * np.pi * complex(-0.6, 0.8))  # 0.6^2 + 0.8^2 = 1
 
 
 def test_every_sensor_of_a_mode_has_its_own_error(synthetic: SyntheticDrop) -> None:

@@ -11,6 +11,7 @@ from pantocheck.conformance.network.span_comparison import (
     EXTENTS_M,
     FALSE_ALARMS_PER_1000_KM,
     GRID_M,
+    LONGEST_SPAN_M,
     estimate_period,
     find_deviations,
     find_spans,
@@ -57,7 +58,9 @@ def test_the_length_of_spans_is_that_of_the_period(span_m: float) -> None:
     force = build_force(1000.0, span_m, 1)
     assert estimate_period(force) == pytest.approx(span_m, abs=0.1)  # the step of the search
     assert estimate_period(np.random.default_rng(1).standard_normal(2000)) == 0.0
-    assert estimate_period(np.full(2000, np.nan)) == 0.0
+    nothing = np.full(2000, np.nan)
+    assert estimate_period(nothing) == 0.0
+    assert (np.diff(find_spans(nothing, NO_SUPPORTS)) == LONGEST_SPAN_M).all()
 
 
 @pytest.mark.parametrize(("extent_m", "force_N"), [(3.0, -60.0), (12.0, 40.0), (30.0, 25.0)])
@@ -70,6 +73,7 @@ def test_defects_are_found_where_they_are(extent_m: float, force_N: float) -> No
     (found,) = find_deviations(subtract_neighbours(force, find_spans(force, NO_SUPPORTS)))
     assert abs(GRID_M * found.index - 2310.0) <= extent_m / 2
     assert found.deviation * np.sign(force_N) > found.threshold
+    assert 4.5 < found.threshold < 5.5  # standard deviations of the mean over the extent
 
 
 def test_spans_of_known_supports_are_compared_with_spans_of_their_length() -> None:
@@ -115,3 +119,7 @@ def test_offsets_are_found_in_part_of_a_run() -> None:
     assert (foreign.first, foreign.last, foreign.offset_m) == (8000, 10_000, None)
     assert not find_offsets(own, others, 0.4)  # where the passages do not agree, none of them is foreign
     assert measure_agreement(own, others) == pytest.approx(1.0, abs=1e-6)
+    # A tenth of the force in a quiet stretch is no agreement: its energy is 1 % of that around it, and counts as 50 %.
+    quiet = random.standard_normal(4000)
+    quiet[100:2100] = 0.1 * own[8000:]
+    assert measure_agreement(own[8000:], quiet) < 0.25
