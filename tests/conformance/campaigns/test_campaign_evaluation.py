@@ -12,6 +12,7 @@ from helpers.cheap_campaign import compute_row, fill_store, speed_design
 from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue, leave_out_constant
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_evaluation import (
+    _chart_influences,
     build_sample_charts,
     build_statistics,
     compare_values,
@@ -110,6 +111,11 @@ def test_tornado_has_both_signs_of_every_input_the_largest_first() -> None:
         numbers = np.where(np.arange(9) < runs, np.arange(9.0), np.nan)
         columns = build_columns(named, {FRONT.column: numbers})
         assert len(list(build_sample_charts(columns, [EvaluatedValue(FRONT.column)], (), tuple("abcd")))) == charts
+
+
+def test_influences_need_more_than_twice_as_many_runs_as_inputs(columns: CampaignColumns) -> None:
+    for runs, charts in ((4, 0), (5, 1)):
+        assert len(list(_chart_influences(columns, FRONT, "", np.arange(runs), GRID))) == charts
 
 
 def test_map_has_a_cell_per_run_and_many_curves_become_one(columns: CampaignColumns) -> None:

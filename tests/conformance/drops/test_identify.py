@@ -237,7 +237,7 @@ def test_records_that_cannot_be_identified_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no mode"):
         read_poles(tmp_path / "modes.json")
     (tmp_path / "poles.toml").write_text("[[pole]]\nfrequency_Hz = 1.0\ndamping_ratio = 1.0\n", encoding="utf-8")
-    with pytest.raises(InputError, match="1 must be less than 1.0"):
+    with pytest.raises(InputError, match="must be less than"):
         read_poles(tmp_path / "poles.toml")
     *_, synthetic = simulate(67, duration=40.0, weak=0.15)
     synthetic.samples[int(synthetic.release * synthetic.rate) + 10 :, 2] = 0.0

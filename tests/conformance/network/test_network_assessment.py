@@ -217,6 +217,7 @@ def test_a_section_and_a_passage_that_differ_are_named(tmp_path: Path, profile: 
     runs = [x for x in unusual if x.run is not None]
     assert {(x.quantity, round(x.value - x.expected)) for x in runs} == {("mean_force_N", 10)}
     assert len(runs) == 10
+    assert any(x.deviation != round(x.deviation, 1) for x in runs)  # two decimals
     assert not assess(files[:2], tmp_path / "two", profile).unusual[1:]  # two passages do not tell which is wrong
 
 
@@ -235,6 +236,8 @@ def test_a_place_has_a_name_and_the_page_escapes_it(tmp_path: Path, profile: Pro
     assert place.km == pytest.approx(10.733, abs=0.002)  # the samples are 0.5 m apart, the mean is over 3 m or more
     assert place.deviation < -place.threshold
     assert (place.found, place.passages, place.place, place.explained) == (3, 3, "support <b>17</b>", False)
+    (alone,) = assess(files[:1], tmp_path / "one", profile).places
+    assert alone.km == pytest.approx(10.733, abs=0.002)
     at_overlap = tuple(x.model_copy(update={"from_km": 10.7, "to_km": 10.73}) if x.name == "U7" else x for x in known)
     assert assess(files, tmp_path / "runs", profile, known_places=at_overlap).places[0].explained
     page = render_html(build_network_page(results))
