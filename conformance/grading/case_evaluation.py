@@ -31,10 +31,9 @@ from pantocheck.conformance.grading.record_uncertainty import (
 )
 from pantocheck.conformance.grading.start_agreement import StartAgreement, compare_starts
 from pantocheck.conformance.quantities.evaluation import LINE, ChannelSignals, Evaluation, Value
-from pantocheck.conformance.quantities.joint_sample import SampleParts, draw_sample
 from pantocheck.conformance.quantities.pantograph_signals import edge_warnings
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty, map_items
+from pantocheck.conformance.quantities.uncertainty import Component, SampleParts, Uncertainty, draw_sample, map_items
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_resolution import resolution_component, sampling_component
 from pantocheck.conformance.records.record_signals import RecordSignals

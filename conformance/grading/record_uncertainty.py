@@ -9,11 +9,10 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.near_limit import BOUNDED_COMPONENTS
 from pantocheck.conformance.quantities.evaluation import LINE, ChannelSignals, Value, ValuesByOwner, evaluate_signals
-from pantocheck.conformance.quantities.joint_sample import DRAWS, SampleParts, draw_sample
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
-from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty
+from pantocheck.conformance.quantities.uncertainty import DRAWS, Component, SampleParts, Uncertainty, draw_sample
 from pantocheck.conformance.records.length_uncertainty import (
     FEWEST_SPANS,
     FEWEST_SPANS_INTERVAL,

@@ -20,9 +20,8 @@ from pantocheck.conformance.pages.words import (
     read_words,
     replace_minus,
 )
-from pantocheck.conformance.quantities.joint_sample import DRAWS
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin
-from pantocheck.conformance.quantities.uncertainty import UNKNOWN_BASIS
+from pantocheck.conformance.quantities.uncertainty import DRAWS, UNKNOWN_BASIS
 from pantocheck.conformance.results.incomplete_uncertainty import (
     EXACT_WIDTH,
     describe_half_width,

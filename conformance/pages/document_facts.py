@@ -2,8 +2,8 @@
 
 from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.pages.document import Facts
+from pantocheck.conformance.pages.page_code import describe_verifier
 from pantocheck.conformance.pages.scope_page import list_sources
-from pantocheck.conformance.pages.verifier_file import describe_verifier
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts

@@ -14,9 +14,8 @@ from pantocheck.conformance.pages.identification_figures import (
     draw_spectra,
     draw_stretch,
 )
-from pantocheck.conformance.pages.mode_scene import build_mode_scene
 from pantocheck.conformance.pages.record_figures import DrawnPlace, draw_drop_layout, draw_motion, draw_spectrogram
-from pantocheck.conformance.pages.shape_figure import draw_shapes, list_measured_shapes, list_supports
+from pantocheck.conformance.pages.shape_figure import build_mode_scene, draw_shapes, list_measured_shapes, list_supports
 from pantocheck.conformance.pages.words import clean_tree, format_percent, format_plain, format_value
 from pantocheck.conformance.results.identification_format import (
     Comparison,

@@ -11,8 +11,7 @@ from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.sourced_table import InputTable, is_absent
-from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.line.derived_line import DerivedLine, build_derived_line
+from pantocheck.conformance.line.catenary_model import DerivedLine, build_catenary, build_derived_line
 from pantocheck.conformance.line.elements.derived_numbers import Numbers, round_number, round_numbers, round_positions
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.records.sidecar_tables import StartTable

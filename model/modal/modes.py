@@ -10,7 +10,7 @@ from pantocheck.model.description.catenary import Kind, Rayleigh
 from pantocheck.model.description.one_thread import use_one_thread
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, with_damping
 from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, free_unknowns
-from pantocheck.model.statics.line_stiffness import factored_stiffness
+from pantocheck.model.statics.unit_responses import factored_stiffness
 
 
 @dataclass(frozen=True)

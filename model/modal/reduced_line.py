@@ -25,7 +25,7 @@ from pantocheck.model.description.arrays import Array
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.modal.modes import Modes, free_vectors
 from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, free_unknowns, stretch_directions
-from pantocheck.model.statics.line_stiffness import factored_stiffness
+from pantocheck.model.statics.unit_responses import factored_stiffness
 
 SMALLEST_SHARE = 1e-6
 """Smallest share of a direction in the responses that joins the span, relative to the largest [-]."""

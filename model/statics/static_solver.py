@@ -10,8 +10,12 @@ from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.description.failures import NoEquilibrium
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
 from pantocheck.model.statics.assembly import bandwidth_order, connector_directions
-from pantocheck.model.statics.line_stiffness import factored_stiffness
-from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses, invert_blocks
+from pantocheck.model.statics.unit_responses import (
+    UnitResponses,
+    compute_unit_responses,
+    factored_stiffness,
+    invert_blocks,
+)
 
 MAX_ITERATIONS = 100
 """Largest number of changes of the set of slack droppers."""

@@ -15,8 +15,8 @@ from helpers.verifier_page import Report, Verify
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.page_code import VERIFIER_FOLDER
 from pantocheck.conformance.pages.translation import read_sections, translate
-from pantocheck.conformance.pages.verifier_file import VERIFIER_FOLDER
 from pantocheck.conformance.pages.words import read_words
 from pantocheck.conformance.results.report_files import LANGUAGES, Language
 from pantocheck.conformance.results.results_format import Results

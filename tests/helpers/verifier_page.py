@@ -29,7 +29,7 @@ class Verify(Protocol):
 def verifier_page(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """The verifier in a browser without a network."""
     from pantocheck.conformance.grading.results_building import build_suite
-    from pantocheck.conformance.pages.verifier_file import build_verifier
+    from pantocheck.conformance.pages.page_code import build_verifier
 
     path = tmp_path_factory.mktemp("verifier") / "verifier.html"
     path.write_bytes(build_verifier(build_suite().version, build_suite().digest))

@@ -81,7 +81,7 @@ SHARED_FILES = {
     "drop_simulate": ("drop campaign",),
     "drop_identify": ("drop fit",),
     "runs": ("runs import", "runs assess"),
-    "system_self_test": ("system check",),
+    "system_self_test": ("system check", "system rig"),
 }
 """Prefix of the names of files with several commands, each with its commands; another command has its own file."""
 

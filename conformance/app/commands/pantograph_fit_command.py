@@ -30,7 +30,7 @@ from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages.report_writers import remark_missing_formats
 from pantocheck.conformance.pantograph.chain_fit import MASS_COUNTS, FitTask, fit_chains, join_responses
 from pantocheck.conformance.pantograph.response_record import read_response
-from pantocheck.conformance.pantograph.transfer_fit import FittedTransfer, fit_transfer_function
+from pantocheck.conformance.pantograph.transfer_function import FittedTransfer, fit_transfer_function
 from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 
 

@@ -77,7 +77,7 @@ def verify_command(
     """
     if write_verifier is not None:
         from pantocheck.conformance.grading.results_building import build_suite
-        from pantocheck.conformance.pages.verifier_file import build_verifier
+        from pantocheck.conformance.pages.page_code import build_verifier
 
         suite = build_suite()
         write_atomically(write_verifier, build_verifier(suite.version, suite.digest))

@@ -25,7 +25,7 @@ from pantocheck.conformance.core.toml_file import validate_model
 from pantocheck.conformance.pantograph.chain_fit import ChainSelection, FitTask, fit_chains
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.response_record import ResponseRecord, read_response
-from pantocheck.conformance.pantograph.transfer_fit import FittedTransfer
+from pantocheck.conformance.pantograph.transfer_function import FittedTransfer
 from pantocheck.conformance.results.comparison_format import ResponseComparison
 from pantocheck.conformance.results.pantograph_fit_format import ChainParameter, PantographFit
 

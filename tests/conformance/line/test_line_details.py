@@ -10,8 +10,7 @@ from helpers.section_lines import section_tables
 from helpers.toml_edit import write_toml
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_model
-from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.line.derived_line import build_derived_line
+from pantocheck.conformance.line.catenary_model import build_catenary, build_derived_line
 from pantocheck.conformance.line.elements.point_mass import PointMasses
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.runs.static_quantities import first_modes

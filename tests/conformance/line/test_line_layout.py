@@ -12,8 +12,7 @@ from helpers.listed_spans import list_spans
 from helpers.toml_edit import change_keys
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.toml_file import read_toml
-from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.line.derived_line import build_derived_line
+from pantocheck.conformance.line.catenary_model import build_catenary, build_derived_line
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.runs.static_quantities import compute_static_quantities

@@ -19,8 +19,7 @@ from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.pantograph.chain_problem import MeasuredStiffness
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.pantograph_model import head_receptance
-from pantocheck.conformance.pantograph.transfer_fit import fit_transfer_function
-from pantocheck.conformance.pantograph.transfer_function import find_activity, receptance
+from pantocheck.conformance.pantograph.transfer_function import find_activity, fit_transfer_function, receptance
 
 OMEGA = 2 * np.pi * FREQUENCY
 

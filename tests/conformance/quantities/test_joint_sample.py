@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pantocheck.conformance.quantities.joint_sample import DRAWS, SampleParts, draw_sample
+from pantocheck.conformance.quantities.uncertainty import DRAWS, SampleParts, draw_sample
 
 DIGEST = "9f" * 32
 VALUES = {0: {"uplift": 50.0}, 1: {"a": 10.0, "b": 20.0, "items": (1.0, 2.0)}}

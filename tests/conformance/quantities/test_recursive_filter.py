@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from pantocheck.conformance.quantities.recursive_filter import (
+from pantocheck.conformance.quantities.filters import (
     design_band_pass,
     design_low_pass,
     filter_both_ways,

@@ -14,7 +14,7 @@ import pytest
 
 from helpers.command_line import pantocheck
 from helpers.short_cases import change_case
-from pantocheck.conformance.app.commands import system_rig_command
+from pantocheck.conformance.app.commands import system_self_test_command
 from pantocheck.conformance.app.self_test.adapter_check import build_short_case, build_twin_case
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.line.catenary_model import discretise_line
@@ -275,7 +275,7 @@ def test_command_runs_a_rig_over_udp(
 ) -> None:
     """In real time, with a watchdog of 5 s: the machine of a test may be busy. The record is one of the case."""
     case = change_case(build_short_case(), mesh=(2.0, STEP_S))
-    monkeypatch.setattr(system_rig_command, "choose_train_case", lambda *_: case)
+    monkeypatch.setattr(system_self_test_command, "choose_train_case", lambda *_: case)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.core.toml_file import read_model
-from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.line.derived_line import build_derived_line
+from pantocheck.conformance.line.catenary_model import build_catenary, build_derived_line
 from pantocheck.conformance.line.elements.dropper import COARSE
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile

@@ -13,7 +13,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.model import Catenary, DiscretisedLine, discretise
 from pantocheck.model.description.failures import NoEquilibrium
 from pantocheck.model.statics.assembly import assemble_matrices, stretch_directions
-from pantocheck.model.statics.line_stiffness import LineStiffness, factored_stiffness
+from pantocheck.model.statics.unit_responses import LineStiffness, factored_stiffness
 
 
 def stitched_line() -> Catenary:

@@ -12,8 +12,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.model import Catenary, discretise
 from pantocheck.model.statics.assembly import connector_directions
 from pantocheck.model.statics.elasticity import static_uplift
-from pantocheck.model.statics.line_stiffness import factored_stiffness
-from pantocheck.model.statics.unit_responses import compute_unit_responses, invert_blocks
+from pantocheck.model.statics.unit_responses import compute_unit_responses, factored_stiffness, invert_blocks
 
 
 def stitched_line() -> Catenary:

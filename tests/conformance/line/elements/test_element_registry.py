@@ -144,7 +144,7 @@ from pantocheck.conformance.core.features import list_features
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.line.catenary_model import build_catenary, discretise_line
-from pantocheck.conformance.line.derived_line import build_derived_line
+from pantocheck.conformance.line.catenary_model import build_derived_line
 from pantocheck.conformance.line.line_drawing import LineDrawing, paint_rows
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.line_shape import build_line_shape, list_connections

@@ -10,8 +10,7 @@ from helpers.section_lines import section_line
 from pantocheck.conformance.app.self_test.adapter_check import build_short_case
 from pantocheck.conformance.cases.case import list_case_features
 from pantocheck.conformance.core.features import list_features
-from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.line.derived_line import build_derived_line
+from pantocheck.conformance.line.catenary_model import build_catenary, build_derived_line
 from pantocheck.conformance.line.elements.wire_spring import WireSpringTable
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.line_shape import list_connections

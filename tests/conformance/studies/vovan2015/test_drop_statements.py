@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pantocheck.conformance.studies.vovan2015.drop_statements import find_merging
+from pantocheck.conformance.studies.vovan2015.mass_drop_study import find_merging
 
 FREQUENCY = np.array([1.0, 1.2, 2.0, 2.4, 2.8, 3.4])
 GROUPS = [1, 1, 2, 2, 3, 3]
