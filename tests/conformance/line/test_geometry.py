@@ -37,6 +37,8 @@ def test_spans_follow_each_other_from_zero_to_the_length_of_the_line(geometry: E
     assert [end for _, end in spans[:-1]] == [start for start, _ in spans[1:]] == list(geometry.supports)
     assert geometry.span_lengths == tuple(end - start for start, end in spans)
     assert geometry.longest_span == geometry.shortest_span == 60.0
+    sections = {(0.0, 60.0): (1, 1), (59.0, 121.0): (1, 3), (60.0, 120.0): (2, 2), (240.0, 300.0): (5, 5)}
+    assert {ends: geometry.spans_of_section(*ends) for ends in sections} == sections
 
 
 def test_section_covers_its_first_and_its_last_span(geometry: EqualSpans) -> None:

@@ -7,6 +7,7 @@ import pytest
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import validate_model
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
+from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 
 CHAIN = {
     "names": ["frame", "head"], "masses_kg": [6.0, 1.5], "stiffness_N_m": [160.0, 7e3], "damping_N_s_m": [9.0, 5.0]
@@ -60,3 +61,10 @@ def test_combination_that_the_model_does_not_have_is_refused(model: str, head: d
 )
 def test_stops_between_two_parts_are_accepted(stop: dict[str, Any]) -> None:
     assert read_head("chain", {"strip": [FRONT, REAR], "stop": [STOP | stop]}).strips == 2
+
+
+def test_friction_of_matrices_does_not_turn_with_the_head() -> None:
+    """The roll is an unknown behind those of the matrices."""
+    file = read_head("matrices", {"roll": TURN, "friction": [RUB | {"direction": [1.0, -1.0]}]})
+    (joint,) = build_pantograph(file, 120.0, 0.0).joints
+    assert joint.direction.tolist() == [1.0, -1.0, 0.0]
