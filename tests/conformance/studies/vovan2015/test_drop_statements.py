@@ -1,9 +1,12 @@
 """Statements on mass drops by hand: groups that merge, and lateral modes."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from pantocheck.conformance.studies.vovan2015.mass_drop_study import find_merging
+from pantocheck.conformance.studies.vovan2015.mass_drop_study import find_merging, select_lateral
 
 FREQUENCY = np.array([1.0, 1.2, 2.0, 2.4, 2.8, 3.4])
 GROUPS = [1, 1, 2, 2, 3, 3]
@@ -21,3 +24,11 @@ def test_a_gap_as_wide_as_its_groups_is_a_gap() -> None:
     assert find_merging(frequency, groups) is None
     assert find_merging(frequency, groups, 1.01) == 1.75
     assert find_merging(np.array([]), []) is None
+
+
+def test_lateral_modes_move_sideways_by_the_larger_part() -> None:
+    """Antisymmetric shapes of one vertical and one lateral row: their squares add up, their values do not."""
+    shape = np.zeros((2, 2, 2, 2))
+    shape[..., 0] = [[[1.0, -1.0], [0.1, 0.1]], [[0.1, 0.1], [1.0, -1.0]]]
+    modes: Any = SimpleNamespace(shape=shape, frequency=np.array([1.0, 2.0]))
+    assert select_lateral(modes).tolist() == [2.0]

@@ -65,6 +65,8 @@ def test_gains_by_hand_fade_from_the_second_to_the_last_band() -> None:
     assert_allclose(locate_end([20, 60, 40, 2], [1.0, 2.0, 3.0, 4.0], 0.3), 3 + 22 / 38)  # 18 % remain
     assert locate_end([20, 60, 40, 2], [1.0, 2.0, 3.0, 4.0], 0.03) is None
     assert "damping_gain_end_Hz" not in damping_gains([0.002] * 4, [0.0024, 0.0032, 0.0028, 0.0022], [1.0, 2, 3, 4])
+    none = damping_gains([0.002] * 4, [0.00199, 0.0032, 0.0028, 0.00204], [1.0, 2.0, 3.0, 4.0])
+    assert none.keys() == {"damping_gain_pct"}  # no gain in the first band: -0.5 %
     findings = damping_gains([0.002, np.nan, 0.003, 0.003], [0.003, 0.006, 0.003, 0.003], [1.0, 2, 3, 4])
     assert_allclose(findings.pop("damping_gain_pct"), [50])
     assert findings == {}
