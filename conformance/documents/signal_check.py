@@ -17,11 +17,7 @@ from pantocheck.conformance.documents.authenticity_check import (
     format_exact,
     shorten_details,
 )
-from pantocheck.conformance.grading.contact_loss_list import (
-    build_contact_losses,
-    find_force_places,
-    find_uplift_place,
-)
+from pantocheck.conformance.grading.contact_loss_list import build_contact_losses, find_force_places, find_uplift_place
 from pantocheck.conformance.grading.results_building import key_by_owner, select_finite
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.stated_quantities import OVERLAP_QUANTITIES, STATED_QUANTITIES

@@ -20,12 +20,7 @@ from pantocheck.conformance.dossier.dossier_file import (
     ValidityTable,
 )
 from pantocheck.conformance.dossier.dossier_reading import Dossier
-from pantocheck.conformance.dossier.step_result import (
-    StepInterrupted,
-    StepResult,
-    describe_conditions,
-    grade_again,
-)
+from pantocheck.conformance.dossier.step_result import StepInterrupted, StepResult, describe_conditions, grade_again
 from pantocheck.conformance.execution.runner import Progress, RunInterrupted, run_cases
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.grading.criterion_grading import build_criterion, skip_unlimited

@@ -26,13 +26,7 @@ from pantocheck.conformance.grading.validity_warnings import extended_band_warni
 from pantocheck.conformance.records.evaluated_signals import pack_signals
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.traces import build_pantograph_traces, build_uplift_traces
-from pantocheck.conformance.results.results_format import (
-    CaseResult,
-    InputGroup,
-    LibraryIdentity,
-    RunFacts,
-    Step,
-)
+from pantocheck.conformance.results.results_format import CaseResult, InputGroup, LibraryIdentity, RunFacts, Step
 from pantocheck.conformance.runs.system import Delivered, Errored, Outcome, Skipped
 
 _EMPTY: dict[str, object] = {

@@ -18,11 +18,7 @@ from pantocheck.conformance.core.verdicts import Verdict, judge_parts, worst_ver
 from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.network.run_collection import RefusedFile, StoredRun
 from pantocheck.conformance.network.run_workers import MapRuns
-from pantocheck.conformance.network.section_grading import (
-    NETWORK_QUANTITIES,
-    grade_run,
-    list_grid,
-)
+from pantocheck.conformance.network.section_grading import NETWORK_QUANTITIES, grade_run, list_grid
 from pantocheck.conformance.network.track_comparison import (
     SPEED_CLASS_KM_H,
     ForceProfile,

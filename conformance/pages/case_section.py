@@ -22,11 +22,7 @@ from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.first_page import FirstPage
 from pantocheck.conformance.pages.frequency_section import build_frequency_section
 from pantocheck.conformance.pages.line_figure import find_earlier_drawing, line_figures, scheme_figures
-from pantocheck.conformance.pages.quantity_tables import (
-    build_quantity_table,
-    list_skipped,
-    list_uncertainty_basis,
-)
+from pantocheck.conformance.pages.quantity_tables import build_quantity_table, list_skipped, list_uncertainty_basis
 from pantocheck.conformance.pages.record_check_table import build_check_section
 from pantocheck.conformance.pages.run_comparison_page import comparison_blocks
 from pantocheck.conformance.pages.scope_page import describe_changes

@@ -18,12 +18,7 @@ from pantocheck.conformance.pages.criteria_table import (
     state_causes,
 )
 from pantocheck.conformance.pages.document import digest_results, find_date
-from pantocheck.conformance.pages.document_facts import (
-    list_administration,
-    list_suite_facts,
-    name_suite,
-    name_system,
-)
+from pantocheck.conformance.pages.document_facts import list_administration, list_suite_facts, name_suite, name_system
 from pantocheck.conformance.pages.findings_table import build_findings_section
 from pantocheck.conformance.pages.first_page import (
     MOST_CASES,

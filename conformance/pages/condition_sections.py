@@ -8,13 +8,7 @@ from dataclasses import replace
 
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.frequency_section import frequency_blocks, mute_row
-from pantocheck.conformance.pages.words import (
-    format_signed,
-    name_pantograph,
-    quantity_label,
-    read_words,
-    replace_minus,
-)
+from pantocheck.conformance.pages.words import format_signed, name_pantograph, quantity_label, read_words, replace_minus
 from pantocheck.conformance.results.case_facts_format import ConditionFacts
 from pantocheck.conformance.results.results_format import CaseResult, InputGroup
 

@@ -22,11 +22,7 @@ from pantocheck.conformance.pages.words import (
 )
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin
 from pantocheck.conformance.quantities.uncertainty import DRAWS, UNKNOWN_BASIS
-from pantocheck.conformance.results.incomplete_uncertainty import (
-    EXACT_WIDTH,
-    describe_half_width,
-    list_missing,
-)
+from pantocheck.conformance.results.incomplete_uncertainty import EXACT_WIDTH, describe_half_width, list_missing
 from pantocheck.conformance.results.results_format import CaseResult
 
 MARGIN_KEY = (

@@ -32,12 +32,7 @@ from pantocheck.conformance.pages.scope_page import (
     list_step_reasons,
     shorten_names,
 )
-from pantocheck.conformance.pages.two_verdicts import (
-    build_verdict_section,
-    case_verdict,
-    count_close,
-    list_criteria,
-)
+from pantocheck.conformance.pages.two_verdicts import build_verdict_section, case_verdict, count_close, list_criteria
 from pantocheck.conformance.pages.verdict_reasons import (
     CLOSE_HEADING,
     describe_chance,

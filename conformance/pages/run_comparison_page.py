@@ -41,11 +41,7 @@ from pantocheck.conformance.results.case_facts_format import (
     MeasuredRun,
     SpanStatistics,
 )
-from pantocheck.conformance.results.comparison_format import (
-    ComparedOwner,
-    ComparedQuantity,
-    RunComparison,
-)
+from pantocheck.conformance.results.comparison_format import ComparedOwner, ComparedQuantity, RunComparison
 from pantocheck.conformance.results.incomplete_uncertainty import describe_half_width, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.results.supported_frequency import (

@@ -27,12 +27,7 @@ from pantocheck.conformance.pantograph.force_law import AppliedForceLaw, ForceLa
 from pantocheck.conformance.pantograph.head_tables import LISTED_BY_LAW, HeadTable
 from pantocheck.conformance.pantograph.transfer_function import TransferFunctionTable
 from pantocheck.conformance.pantograph.validity_range import SupportedRange
-from pantocheck.model.description.contact_law import (
-    Force,
-    contact_compliance,
-    hertz_law_coefficient,
-    penetration,
-)
+from pantocheck.model.description.contact_law import Force, contact_compliance, hertz_law_coefficient, penetration
 
 
 def _is_default(value: object) -> bool:

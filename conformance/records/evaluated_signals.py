@@ -24,11 +24,7 @@ from pantocheck.conformance.quantities.line_signals import (
     stack_supports,
     supports_inside,
 )
-from pantocheck.conformance.quantities.pantograph_signals import (
-    EXTENDED_CUTOFF_HZ,
-    ForceChannel,
-    PantographSignals,
-)
+from pantocheck.conformance.quantities.pantograph_signals import EXTENDED_CUTOFF_HZ, ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside, Stretch, evaluate_outside_overlaps
 from pantocheck.conformance.quantities.unavailable import BandNotObservable, QuantityUnavailable
 from pantocheck.conformance.records.record import LARGEST_NUMBER

@@ -9,23 +9,12 @@ import numpy as np
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.files import MAX_FILE_BYTES, check_file
 from pantocheck.conformance.core.input_error import InputError, join_errors
-from pantocheck.conformance.core.measured_table import (
-    MeasuredTable,
-    TableColumn,
-)
+from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn
 from pantocheck.conformance.core.table_sidecar import read_sidecar
 from pantocheck.conformance.core.texts import DocumentationPage, count_noun
 from pantocheck.conformance.core.toml_file import read_model, read_toml
-from pantocheck.conformance.records.column_values import (
-    list_left_out_sensors,
-)
-from pantocheck.conformance.records.record import (
-    CHANNELS,
-    STRIP_CHANNELS,
-    ChannelRows,
-    Record,
-    RecordInvalid,
-)
+from pantocheck.conformance.records.column_values import list_left_out_sensors
+from pantocheck.conformance.records.record import CHANNELS, STRIP_CHANNELS, ChannelRows, Record, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.samples import RecordSamples, build_record

@@ -5,12 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pantocheck.conformance.core.input_error import suggest_names
-from pantocheck.conformance.core.sourced_table import (
-    Problems,
-    SourcedTable,
-    cross_check,
-    validation_problem,
-)
+from pantocheck.conformance.core.sourced_table import Problems, SourcedTable, cross_check, validation_problem
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import QUANTITIES

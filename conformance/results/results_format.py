@@ -23,13 +23,7 @@ from pantocheck.conformance.core.findings import FindingCounts
 from pantocheck.conformance.core.json_file import format_json
 from pantocheck.conformance.core.packed_samples import SignalSamples
 from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart, Suite, is_empty
-from pantocheck.conformance.core.sourced_table import (
-    NonNegative,
-    Problems,
-    cross_check,
-    is_absent,
-    validation_problem,
-)
+from pantocheck.conformance.core.sourced_table import NonNegative, Problems, cross_check, is_absent, validation_problem
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.quantities.filters import Filter

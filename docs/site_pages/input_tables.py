@@ -3,11 +3,7 @@
 from collections.abc import Sequence
 
 from pantocheck.conformance.cases.case_source import list_library
-from pantocheck.conformance.cases.input_studies import (
-    ErrorBound,
-    find_conditions,
-    find_resolving_power,
-)
+from pantocheck.conformance.cases.input_studies import ErrorBound, find_conditions, find_resolving_power
 from pantocheck.conformance.line.library_folder import library_folder
 from site_pages.markdown_table import build_markdown_table
 

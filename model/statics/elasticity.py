@@ -9,12 +9,7 @@ from pantocheck.model.fem import beam
 from pantocheck.model.fem.mesh import find_element, find_elements
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.statics.assembly import point_load
-from pantocheck.model.statics.contact_wires import (
-    locate_contact_wires,
-    mark_touched_wires,
-    touched_rows,
-    wire_heights,
-)
+from pantocheck.model.statics.contact_wires import locate_contact_wires, mark_touched_wires, touched_rows, wire_heights
 from pantocheck.model.statics.static_solver import point_product, static_solver
 from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses, invert_blocks
 

@@ -6,16 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigvals
 
-from pantocheck.model import (
-    Catenary,
-    Dropper,
-    Kind,
-    MessengerSupport,
-    Rayleigh,
-    SteadyArm,
-    Wire,
-    build_chain,
-)
+from pantocheck.model import Catenary, Dropper, Kind, MessengerSupport, Rayleigh, SteadyArm, Wire, build_chain
 from pantocheck.model.description.sections import join_sections, place_section
 
 Array = NDArray[np.float64]

@@ -11,14 +11,7 @@ from typing import Any
 from pantocheck.conformance.cases.library import list_library, load_case
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.line.library_folder import library_folder
-from verification.attacks.consistent_results import (
-    Tree,
-    adopt_widths,
-    case_of,
-    change_signal,
-    follow_signals,
-    regrade,
-)
+from verification.attacks.consistent_results import Tree, adopt_widths, case_of, change_signal, follow_signals, regrade
 
 Change = Callable[[Tree, random.Random], object]
 

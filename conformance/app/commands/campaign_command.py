@@ -18,12 +18,7 @@ from pantocheck.conformance.app.commands.progress_display import FIRST_SHARE, sh
 from pantocheck.conformance.campaigns.campaign_columns import choose_values
 from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress
 from pantocheck.conformance.campaigns.campaign_evaluation import RunPair, evaluate_campaign, pair_runs
-from pantocheck.conformance.campaigns.campaign_file import (
-    CampaignFile,
-    Execution,
-    check_variation,
-    parse_variation,
-)
+from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution, check_variation, parse_variation
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, find_campaign_file, prepare_campaign
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table, write_parquet

@@ -6,11 +6,7 @@ from itertools import pairwise
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.text import Text
 
-from pantocheck.conformance.app.commands.console import (
-    escape_text,
-    indent_text,
-    style_verdict,
-)
+from pantocheck.conformance.app.commands.console import escape_text, indent_text, style_verdict
 from pantocheck.conformance.app.commands.quantities_table import build_quantities_table, select_main
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Traces

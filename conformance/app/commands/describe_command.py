@@ -11,11 +11,7 @@ from rich.text import Text
 from pantocheck.conformance.app.commands.command_output import CommandOutput, Unwrapped
 from pantocheck.conformance.app.commands.console import FittedTable, build_table, escape_text, indent_text
 from pantocheck.conformance.app.commands.new_command import write_new_file
-from pantocheck.conformance.app.commands.sidecar_drafts import (
-    DescribedTable,
-    draft_drop_sidecar,
-    draft_record_sidecar,
-)
+from pantocheck.conformance.app.commands.sidecar_drafts import DescribedTable, draft_drop_sidecar, draft_record_sidecar
 from pantocheck.conformance.core.csv_table import open_text_table
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import CSV, EVERY_RATE, MeasuredTable, read_tables

@@ -20,12 +20,7 @@ from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.quantities.evaluation import LINE, ValuesByOwner
 from pantocheck.conformance.quantities.registry import QUANTITIES, unit_of
 from pantocheck.conformance.records.traces import build_pantograph_traces, build_uplift_traces
-from pantocheck.conformance.results.exploration_format import (
-    ExploredPassage,
-    ExploredStretch,
-    ExploredValue,
-    Slider,
-)
+from pantocheck.conformance.results.exploration_format import ExploredPassage, ExploredStretch, ExploredValue, Slider
 from pantocheck.conformance.results.motion_format import PassageMotion
 from pantocheck.conformance.runs.passage_motion import build_passage_motion
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator

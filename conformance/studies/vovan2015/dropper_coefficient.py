@@ -31,12 +31,7 @@ from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.runs.case_run import build_passage, build_run_table, integrate_passage, record_passage
 from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import build_drop_run_table
-from pantocheck.conformance.studies.vovan2015.study_report import (
-    build_provenance_table,
-    draw_curve,
-    find_crossing,
-    rms,
-)
+from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table, draw_curve, find_crossing, rms
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise
 from pantocheck.model.discretisation.discretised_line import keep_viscous_part, with_damping
 

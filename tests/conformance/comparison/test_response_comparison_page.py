@@ -13,11 +13,7 @@ from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_page import build_comparison
 from pantocheck.conformance.pages.pantograph_pages import RESPONSE_PAGE, draw_response, select_drawn_rows
-from pantocheck.conformance.results.comparison_format import (
-    RESPONSE_QUANTITIES,
-    ComparedResponse,
-    ResponseComparison,
-)
+from pantocheck.conformance.results.comparison_format import RESPONSE_QUANTITIES, ComparedResponse, ResponseComparison
 
 FREQUENCY = [1.0, 10.0, 40.0]
 

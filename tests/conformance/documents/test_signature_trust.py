@@ -12,12 +12,7 @@ from helpers.signer_fixtures import Signers
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents import key_files
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck
-from pantocheck.conformance.documents.cms_check import (
-    NO_SIGNATURE,
-    REVOCATION,
-    SignatureReport,
-    describe_signatures,
-)
+from pantocheck.conformance.documents.cms_check import NO_SIGNATURE, REVOCATION, SignatureReport, describe_signatures
 from pantocheck.conformance.documents.signature_check import check_signatures
 from pantocheck.conformance.documents.verification import check_origin
 

@@ -4,10 +4,7 @@ from typing import Any
 
 from helpers.shown_page import certify, shown_certificate
 from pantocheck.conformance.pages.document import Code, RichText, Section
-from pantocheck.conformance.pages.quantity_tables import (
-    build_quantity_table,
-    list_uncertainty_basis,
-)
+from pantocheck.conformance.pages.quantity_tables import build_quantity_table, list_uncertainty_basis
 from pantocheck.conformance.pages.words import format_value
 from pantocheck.conformance.results.results_format import CaseResult
 

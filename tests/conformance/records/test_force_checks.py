@@ -9,12 +9,7 @@ import scipy
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
-from pantocheck.conformance.records.force_checks import (
-    _leakage_free_rms,
-    detect_filtered,
-    find_clipping,
-    find_outliers,
-)
+from pantocheck.conformance.records.force_checks import _leakage_free_rms, detect_filtered, find_clipping, find_outliers
 
 
 def place_outlier(force: RealArray, index: int, distance: float) -> RealArray:

@@ -8,14 +8,7 @@ from scipy.signal import periodogram
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, simple_line
 from helpers.step_differences import THREE_MASSES, largest_differences
-from pantocheck.model import (
-    Irregularity,
-    Passage,
-    SpectralDensity,
-    discretise,
-    realise_irregularity,
-    simulate_passage,
-)
+from pantocheck.model import Irregularity, Passage, SpectralDensity, discretise, realise_irregularity, simulate_passage
 from pantocheck.model.description.catenary import Catenary
 from pantocheck.model.description.irregularity_spline import irregularity_height
 from pantocheck.model.description.pantograph import Pantograph

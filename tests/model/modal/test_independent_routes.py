@@ -10,11 +10,7 @@ from helpers.lines import PANTOGRAPH_2002, Array, simple_line
 from pantocheck.model import Kind, Passage, Rayleigh, discretise, simulate_passage
 from pantocheck.model.description.pantograph import preload_springs
 from pantocheck.model.modal.modes import compute_modes
-from verification.guide.peers.scikit_fem_modes import (
-    COMPARED_MODES,
-    FREQUENCY_TOLERANCE,
-    solve_with_scikit_fem,
-)
+from verification.guide.peers.scikit_fem_modes import COMPARED_MODES, FREQUENCY_TOLERANCE, solve_with_scikit_fem
 
 PANTOGRAPH = preload_springs(PANTOGRAPH_2002, np.full(2, 0.06))
 RATE = 500.0

@@ -5,14 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.model import (
-    DiscretisedLine,
-    Passage,
-    SimulationError,
-    build_chain,
-    discretise,
-    make_droppers_bilateral,
-)
+from pantocheck.model import DiscretisedLine, Passage, SimulationError, build_chain, discretise, make_droppers_bilateral
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.kernel_compilation import bind_arrays
 from pantocheck.model.dynamics.motion import end_of_step

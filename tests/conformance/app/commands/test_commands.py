@@ -28,12 +28,7 @@ from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.runs.record_folder import RecordFolder
 from pantocheck.conformance.runs.system import Outcome
 from pantocheck.conformance.runs.uplift_tuning import TuningFailed
-from pantocheck.model.description.failures import (
-    DidNotConverge,
-    ImpossiblePassage,
-    NoEquilibrium,
-    NoInitialState,
-)
+from pantocheck.model.description.failures import DidNotConverge, ImpossiblePassage, NoEquilibrium, NoInitialState
 from pantocheck.model.dynamics.core_choice import choose_core
 
 

@@ -16,12 +16,7 @@ from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered, Outcome, Skipped, StudyResult
 from pantocheck.conformance.studies.damping_sensitivity import draw_band_bars
-from pantocheck.conformance.studies.vovan2015.damping_change import (
-    CHANGES,
-    EARLIER_LEVEL,
-    _compare_runs,
-    compare_force,
-)
+from pantocheck.conformance.studies.vovan2015.damping_change import CHANGES, EARLIER_LEVEL, _compare_runs, compare_force
 
 
 @dataclass(frozen=True)
