@@ -57,8 +57,11 @@ HEIGHT_ERROR_M, HEIGHT_TOLERANCE_M = 0.003, 0.02
 STEP_SHARE = 0.5
 """Step of the central differences, over the standard deviation of the factor [-]."""
 
-GAUSS_NEWTON_STEPS = 3
-"""Number of Gauss-Newton steps for the elasticities."""
+MOST_UPDATES = 3
+"""Largest number of Gauss-Newton steps."""
+
+LAST_UPDATE = 0.3
+"""Change of a factor that ends the steps, over its standard deviation [-]."""
 
 BAND_EDGES_HZ = tuple(range(0, 51, 5))
 """Bands of a passage [Hz]. Other clamps move the peaks of the dropper passing, and hardly change the wide bands."""
@@ -146,7 +149,7 @@ def update_by_elasticity(estimate: LineEstimate, line: LineFile, record: StaticR
         return np.asarray((high - low) / (forces[1] - forces[0]))
 
     mechanical = [number for number, each in enumerate(estimate.parameters) if each.group is not None]
-    return update_linear(estimate, "elasticity", predict, mechanical, measured, std, GAUSS_NEWTON_STEPS)
+    return update_linear(estimate, "elasticity", predict, mechanical, measured, np.diag(std**2))
 
 
 def update_by_passage(estimate: LineEstimate, line: LineFile, passage: MeasuredPassage) -> LineEstimate:
@@ -154,7 +157,8 @@ def update_by_passage(estimate: LineEstimate, line: LineFile, passage: MeasuredP
     measured = np.array([value for _, _, value in passage.values])
     places = list(range(len(estimate.parameters)))
     predict = simulate_bands(passage, line, estimate)
-    return update_linear(estimate, passage.name, predict, places, measured, BAND_ERROR * measured, 1)
+    errors = _build_band_covariance(passage, line, estimate, predict(estimate.factors))
+    return update_linear(estimate, passage.name, predict, places, measured, errors)
 
 
 def update_linear(
@@ -163,10 +167,9 @@ def update_linear(
     predict: Predict,
     places: Sequence[int],
     measured: RealArray,
-    std: RealArray,
-    steps: int,
+    errors: RealArray,
 ) -> LineEstimate:
-    """Estimate with measured values of independent errors, by Gauss-Newton steps.
+    """Estimate with measured values, by Gauss-Newton steps.
 
     Args:
         estimate: Estimate before.
@@ -174,16 +177,20 @@ def update_linear(
         predict: Model of the values.
         places: Properties on which they depend.
         measured: Measured values, (n,).
-        std: Their standard deviations, (n,).
-        steps: Number of steps.
+        errors: Covariance of their errors and of those of the model, (n, n).
     """
-    factors, information = estimate.factors, np.linalg.inv(estimate.covariance)
-    for _ in range(steps):
-        value, slope = differentiate(estimate, predict, places, factors)
-        weighted = slope / std[:, None]
-        left = (measured - value + slope @ (factors - estimate.factors)) / std
+    factors, covariance = estimate.factors, estimate.covariance
+    information, whiten = np.linalg.inv(covariance), np.linalg.inv(np.linalg.cholesky(errors))
+    for _ in range(MOST_UPDATES):
+        value, slope = differentiate(predict, places, factors, np.sqrt(np.diag(covariance)))
+        weighted = whiten @ slope
+        left = whiten @ (measured - value + slope @ (factors - estimate.factors))
         covariance = np.linalg.inv(information + weighted.T @ weighted)
-        factors = estimate.factors + covariance @ weighted.T @ left
+        moved = estimate.factors + covariance @ weighted.T @ left
+        change = np.abs(moved - factors) / np.sqrt(np.diag(covariance))
+        factors = moved
+        if change.max() < LAST_UPDATE:
+            break
     residual = left - weighted @ (factors - estimate.factors)
     freedom = max(measured.size - float(np.trace(covariance @ weighted.T @ weighted)), 1.0)
     misfit = float(residual @ residual) / freedom
@@ -193,13 +200,13 @@ def update_linear(
 
 
 def differentiate(
-    estimate: LineEstimate, predict: Predict, places: Sequence[int], factors: RealArray
+    predict: Predict, places: Sequence[int], factors: RealArray, std: RealArray
 ) -> tuple[RealArray, RealArray]:
     """Values of a model, (n,), and their derivatives by all factors, (n, p): zero but for some properties."""
     value = predict(factors)
     slope = np.zeros((value.size, factors.size))
     for place in places:
-        step = STEP_SHARE * np.sqrt(estimate.covariance[place, place]) * np.eye(factors.size)[place]
+        step = STEP_SHARE * std[place] * np.eye(factors.size)[place]
         slope[:, place] = (predict(factors + step) - predict(factors - step)) / (2 * step[place])
     return value, slope
 
@@ -222,20 +229,15 @@ def simulate_bands(passage: MeasuredPassage, line: LineFile, estimate: LineEstim
 def judge_held_out(
     estimate: LineEstimate, line: LineFile, passage: MeasuredPassage
 ) -> tuple[tuple[HeldOutValue, ...], float]:
-    """Bands of a passage that took no part in the estimate, and the probability of their distance from it.
-
-    The covariance of the distance is that of the line, of independent errors, and of the mesh: the change with halved
-    steps is an error of all bands together.
-    """
+    """Bands of a passage that took no part in the estimate, and the probability of their distance from it."""
     measured = np.array([value for _, _, value in passage.values])
     predict = simulate_bands(passage, line, estimate)
-    value, slope = differentiate(estimate, predict, range(len(estimate.parameters)), estimate.factors)
+    std = np.sqrt(np.diag(estimate.covariance))
+    value, slope = differentiate(predict, range(len(estimate.parameters)), estimate.factors, std)
     stated = predict(np.ones(len(estimate.parameters)))
-    finer = simulate_bands(replace(passage, case=_halve_steps(passage.case)), line, estimate)(estimate.factors) - value
-    by_line, own = slope @ estimate.covariance @ slope.T, BAND_ERROR * measured
+    by_line, errors = slope @ estimate.covariance @ slope.T, _build_band_covariance(passage, line, estimate, value)
     distance = measured - value
-    covariance = by_line + np.diag(own**2) + np.outer(finer, finer)
-    statistic = float(distance @ np.linalg.solve(covariance, distance))
+    statistic = float(distance @ np.linalg.solve(by_line + errors, distance))
     rows = tuple(
         HeldOutValue(
             pantograph=owner,
@@ -244,11 +246,23 @@ def judge_held_out(
             predicted=float(value[n]),
             stated=float(stated[n]),
             line_std=float(np.sqrt(by_line[n, n])),
-            model_std=float(np.hypot(own[n], finer[n])),
+            model_std=float(np.sqrt(errors[n, n])),
         )
         for n, (owner, name, each) in enumerate(passage.values)
     )
     return rows, float(scipy.stats.chi2.sf(statistic, measured.size))
+
+
+def _build_band_covariance(
+    passage: MeasuredPassage, line: LineFile, estimate: LineEstimate, value: RealArray
+) -> RealArray:
+    """Covariance of the errors of measured and computed bands, (n, n).
+
+    Errors of measured bands are independent; the change with halved steps is an error of all bands together.
+    """
+    own = BAND_ERROR * np.array([measured for _, _, measured in passage.values])
+    finer = simulate_bands(replace(passage, case=_halve_steps(passage.case)), line, estimate)(estimate.factors) - value
+    return np.asarray(np.diag(own**2) + np.outer(finer, finer))
 
 
 def _halve_steps(case: Case) -> Case:

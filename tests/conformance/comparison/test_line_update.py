@@ -248,14 +248,27 @@ def test_linear_update_is_the_posterior_of_a_normal_model() -> None:
         return slope * (factors[0] - 1)
 
     measured = slope * 0.004
-    found = update_linear(estimate, "test", predict, [0], measured, std, 1)
+    found = update_linear(estimate, "test", predict, [0], measured, np.diag(std**2))
     information = 1 / 0.01**2 + np.sum((slope / std) ** 2)
     assert found.covariance[0, 0] == pytest.approx(1 / information, rel=1e-6)
     assert found.factors[0] - 1 == pytest.approx(0.004 * np.sum((slope / std) ** 2) / information, rel=1e-6)
     assert np.diag(found.covariance)[1:] == pytest.approx(np.diag(estimate.covariance)[1:])
-    far = update_linear(estimate, "test", predict, [0], np.array([0.3, 0.3]), std, 1)
+    far = update_linear(estimate, "test", predict, [0], np.array([0.3, 0.3]), np.diag(std**2))
     assert far.data[0].misfit > 10
     assert found.covariance[0, 0] < far.covariance[0, 0] < estimate.covariance[0, 0]
+
+
+def test_curved_model_is_solved_at_the_measured_line() -> None:
+    """Powers 3 and -2 of a factor of 1.03: one step misses it by about 1e-3, 30 of its deviations.
+
+    The prior of 1 % pulls by 0.03 (3e-5 / 0.01)^2 = 3e-7; the last step leaves less than a deviation.
+    """
+    estimate, power = begin_estimate(read_unequal_line()), np.array([3.0, -2.0])
+    found = update_linear(estimate, "test", lambda factors: factors[0] ** power, [0], 1.03**power, np.eye(2) * 1e-8)
+    assert found.factors[0] == pytest.approx(1.03, abs=5e-5)
+    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(
+        1e-4 / np.linalg.norm(power * 1.03 ** (power - 1)), rel=0.01
+    )
 
 
 def test_stiffer_steady_arm_is_a_shorter_one() -> None:
