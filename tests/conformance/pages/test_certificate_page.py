@@ -139,6 +139,7 @@ def test_definitions_state_the_worth_of_filter_and_band(results: dict[str, Any])
 def test_case_facts_show_wall_time_filter_and_force_laws(passing: dict[str, Any]) -> None:
     facts = list_case_facts(CaseResult.model_validate(passing["cases"][0]))
     assert dict(facts.times)["Wall time / simulated time"] == format_value(0.412 / 7.0, 3)
+    assert dict(facts.pairs)["Analysis section"] == "240 m to 360 m"
     assert dict(facts.pairs)["Filter"] == "Butterworth, order 6, −3 dB at 20 Hz, zero phase"
     # Without a law, results.json has no key for it.
     case = passing["cases"][0]
