@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from pantocheck.conformance.drops.damping_model import (
     fit_modal_bands,
     residual_without_term,
 )
-from pantocheck.conformance.drops.mode_matching import modal_assurance, pair_modes
+from pantocheck.conformance.drops.mode_matching import MatchedModes, modal_assurance, pair_modes
 from pantocheck.model.modal.modal_damping import apply_modal_bands
 from pantocheck.model.modal.modes import ComponentEnergies
 
@@ -225,6 +226,15 @@ def test_pairs_by_frequency_and_shapes() -> None:
     # One sensor has no shape to compare: its similarity is 1, on a node of the computed mode, too.
     (pair,) = pair_modes(np.array([1.0]), [np.array([1.0 + 0.0j])], np.array([1.0]), [np.array([[0.0]])])
     assert (pair.measured, pair.computed, pair.mac) == (0, 0, 1.0)
+
+
+def test_paired_modes_keep_their_groups() -> None:
+    facts = {"damping_ratio": 1e-3, "damping_ratio_std": 1e-5}
+    usable: Any = [SimpleNamespace(frequency_Hz=float(group), group=group, **facts) for group in (1, 2, 3)]
+    pairs: Any = [SimpleNamespace(measured=number) for number in (0, 2)]
+    nothing: Any = None
+    measured = MatchedModes(usable, nothing, nothing, pairs, nothing).measured
+    assert (measured.group.tolist(), measured.frequency.tolist()) == ([1, 3], [1.0, 3.0])
 
 
 @pytest.mark.parametrize(("mac", "paired"), [(0.1, False), (0.3, False), (0.49, False), (0.51, True), (0.9, True)])
