@@ -49,7 +49,9 @@ class Normal(InputTable):
 
     def quantiles(self, probability: RealArray) -> RealArray:
         """Values at some probabilities."""
-        values: RealArray = self.mean + self.std * ndtri(_avoid_ends(probability))
+        values: RealArray = self.mean + self.std * ndtri(
+            np.clip(probability, SMALLEST_PROBABILITY, 1 - SMALLEST_PROBABILITY)
+        )
         return values
 
 
@@ -121,7 +123,3 @@ Distribution = Annotated[Uniform | Normal | TruncatedNormal | Discrete | Seed, F
 def _find_reversed(lower: float, upper: float) -> Problems:
     if upper <= lower:
         yield validation_problem("upper", f"{upper:g} is not greater than lower = {lower:g}", "Swap them.")
-
-
-def _avoid_ends(probability: RealArray) -> RealArray:
-    return np.clip(probability, SMALLEST_PROBABILITY, 1 - SMALLEST_PROBABILITY)

@@ -292,6 +292,7 @@ def _describe_response(
     errors = record.uncertainty
     model = model_stiffness(pantograph, frequency)
     curve_frequency = np.geomspace(frequency[0], frequency[-1], MODEL_CURVE_POINTS)
+    curve = model_stiffness(pantograph, curve_frequency)
     measured_phase = _passive_phase(model) - deviation.imag
     return ComparedResponse(
         name=record.source,
@@ -312,14 +313,10 @@ def _describe_response(
         phase_uncertainty_deg=() if errors is None else tuple(np.degrees(errors.phase[present])),
         modulus_deviation_pct=tuple(100 * deviation.real),
         phase_deviation_deg=tuple(np.degrees(deviation.imag)),
-        model=_build_model_curve(form, curve_frequency, model_stiffness(pantograph, curve_frequency)),
+        model=_build_curve(form, curve_frequency, curve, _passive_phase(curve)),
         bands=bands,
         supported_to_Hz=find_supported_frequency(frequency, deviation),
     )
-
-
-def _build_model_curve(form: ResponseForm, frequency: RealArray, stiffness: ComplexArray) -> HeadResponse:
-    return _build_curve(form, frequency, stiffness, _passive_phase(stiffness))
 
 
 def _passive_phase(stiffness: ComplexArray) -> RealArray:

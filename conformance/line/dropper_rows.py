@@ -166,7 +166,7 @@ def _find_heights(line: LineFile, where: str) -> list[list[float]]:
     lengths = [length for schedule in line.dropper_schedules for length in schedule.length_m or ()]
     wires = line.contact_wire.number
     try:
-        catenary = build_catenary(line.without_variation)
+        catenary = build_catenary(line.model_copy(update={"variation": None}))
         hanging = hang_on_droppers(catenary, np.repeat(lengths, wires), LENGTH_ELEMENT_M)
     except SimulationError as error:
         hint = "Check the lengths: they are those of the droppers without load, from wire to wire."

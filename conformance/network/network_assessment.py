@@ -182,13 +182,6 @@ def combine_tracks(
     )
 
 
-def assess_network(
-    runs: Iterable[StoredRun], refused: Sequence[RefusedFile], task: AssessmentTask, map_runs: MapRuns = map
-) -> NetworkResults:
-    """Grade every section of a collection; parameters and errors as of `assess_tracks` and `combine_tracks`."""
-    return combine_tracks([track for track, _ in assess_tracks(runs, task, map_runs)], refused, task)
-
-
 def _keep_worst(places: Sequence[ForcePlace]) -> list[ForcePlace]:
     """Places with the worst one first; traces of the first hundred."""
     ordered = sorted(places, key=lambda x: (-abs(x.deviation) / x.threshold, x.line, x.track, x.km))

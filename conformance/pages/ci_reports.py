@@ -245,7 +245,7 @@ def _find_place(test: GradedTest, case_id: str, places: ReportPlaces) -> FilePla
     if row is None or row.trust == "computed":
         return places.find_case(case_id)
     if row.is_drift:
-        return places.find_baseline(case_id)
+        return places.baseline or places.find_case(case_id)
     return places.find_limit(case_id, row.quantity, row.pantograph, row.item)
 
 

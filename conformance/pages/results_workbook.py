@@ -15,8 +15,8 @@ PART_COLUMNS = ("case", "pantograph", "quantity", "item", "unit", "value", "unce
 
 def render_workbook(results: Results) -> bytes:
     """XLSX file with the numbers of a run in all their digits."""
-    sheets = (_build_verdicts(results), _build_criteria(results), _build_quantities(results), _build_parts(results))
-    return write_workbook(sheets)
+    parts = _build_sheet("uncertainty", PART_COLUMNS, list(_list_parts(results)))
+    return write_workbook((_build_verdicts(results), _build_criteria(results), _build_quantities(results), parts))
 
 
 def _build_sheet(name: str, head: Sequence[str], rows: list[list[CellContent]]) -> WrittenSheet:
@@ -81,12 +81,8 @@ def _name_column(name: str, item: int | None) -> str:
     return " ".join(filter(None, parts))
 
 
-def _build_parts(results: Results) -> WrittenSheet:
-    """Uncertainties by component."""
-    return _build_sheet("uncertainty", PART_COLUMNS, list(_list_parts(results)))
-
-
 def _list_parts(results: Results) -> Iterator[list[CellContent]]:
+    """Uncertainties by component."""
     places, quantity = [COLUMNS.index(name) for name in PART_COLUMNS], COLUMNS.index("quantity")
     for case in results.cases:
         for row in list_quantity_rows(case):

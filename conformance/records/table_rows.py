@@ -55,17 +55,13 @@ def read_single_table(path: Path, file: ColumnFile, used: tuple[str, ...]) -> Me
     tables = read_tables(path, names, MAX_SAMPLES, layout=file.table)
     if len(tables) > 1 and tables[0].run:
         raise InputError(f"record '{path.name}'", f"holds {len(tables)} runs", "Write one file per run.")
-    needed = [{name for name in used if name in _list_labels(table)} for table in tables]
+    needed = [set(used) & {column.label for column in add_time_column(table).columns} for table in tables]
     together = set[str]().union(*needed)
     if together not in needed:
         rates = "; ".join(", ".join(sorted(part)) for part in needed if part)
         found = f"the columns have different sampling times: {rates[:200]}"
         raise InputError(f"record '{path.name}'", found, SAMPLED_TOGETHER)
     return tables[needed.index(together)]
-
-
-def _list_labels(table: MeasuredTable) -> list[str]:
-    return [column.label for column in add_time_column(table).columns]
 
 
 def read_rows(

@@ -60,10 +60,6 @@ class ReportPlaces:
         """Place of a case as a whole."""
         return self.cases[case_id].case if case_id in self.cases else self.default
 
-    def find_baseline(self, case_id: str) -> FilePlace | None:
-        """Place of the drift of a value from its baseline."""
-        return self.baseline or self.find_case(case_id)
-
     def find_limit(self, case_id: str, quantity: str, pantograph: int, item: int | None) -> FilePlace | None:
         """Place in a file that states the limit of a value; otherwise the place of its case."""
         limits = self.cases[case_id].limits if case_id in self.cases else self.limits

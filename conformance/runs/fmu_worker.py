@@ -205,7 +205,7 @@ class Session:
         real = (variable for variable in self.described.modelVariables if str(variable.type) in ("Real", "Float64"))
         listed, size = {}, 0
         for variable in sorted(real, key=lambda variable: variable.name not in names):
-            unit = self._find_unit(variable)
+            unit = variable.unit or getattr(variable.declaredType, "unit", None) or ""
             base = self._describe_unit(units.get(unit))
             facts = {"causality": str(variable.causality), "unit": unit, "base": base}
             size += len(variable.name) + len(json.dumps(facts))
@@ -217,10 +217,6 @@ class Session:
     @property
     def _has_state(self) -> bool:
         return bool(getattr(self.part, "canGetAndSetFMUstate", False))
-
-    @staticmethod
-    def _find_unit(variable: Any) -> str:
-        return variable.unit or getattr(variable.declaredType, "unit", None) or ""
 
     @staticmethod
     def _describe_unit(unit: Any) -> dict[str, float] | None:

@@ -218,7 +218,7 @@ def rest_heights(case: Case, supports: RealArray) -> RealArray:
         found = [rise for place, rise in rises if place.first < limit.number < place.last]
         if line.steady_arm_at(support).static_share == "level":
             heights.append(min(limit.contact_wire_height + rise(limit.position) for rise in found))
-        elif line.has_varied_droppers:
+        elif line.variation is not None and line.variation.droppers is not None:
             heights.append(np.nan)
         else:
             heights.append(min(_hanging_height(limit.position, before, after, sag, rise) for rise in found))

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, Tag
@@ -112,16 +112,6 @@ class Variations(Element):
 
     variation: Annotated[Variation | None, Field(exclude_if=is_absent), VARIATION] = None
     """Variation of the line after it was built."""
-
-    @property
-    def has_varied_droppers(self) -> bool:
-        """Whether the droppers have other lengths than the line as built."""
-        return self.variation is not None and self.variation.droppers is not None
-
-    @property
-    def without_variation(self) -> Self:
-        """Same line as it was built."""
-        return self.model_copy(update={"variation": None})
 
     @cross_check
     def _check_length_changes(self) -> Problems:

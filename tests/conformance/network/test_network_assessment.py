@@ -15,7 +15,12 @@ from pantocheck.conformance.comparison.profile_grading import grade_record
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
-from pantocheck.conformance.network.network_assessment import AssessmentTask, assess_network, judge_network
+from pantocheck.conformance.network.network_assessment import (
+    AssessmentTask,
+    assess_tracks,
+    combine_tracks,
+    judge_network,
+)
 from pantocheck.conformance.network.run_collection import import_files, list_refused, list_runs, open_collection
 from pantocheck.conformance.network.section_grading import grade_run, list_grid
 from pantocheck.conformance.network.track_places import read_places
@@ -39,7 +44,7 @@ def assess(files: list[Path], folder: Path, profile: Profile, **changes: object)
         list(import_files(files, folder, None))
     task = AssessmentTask(profile, "provisional", ("section", "speed", "direction", "pantograph"), 0.5)
     task = replace(task, **changes)  # type: ignore[arg-type]
-    return assess_network(list_runs(folder), list_refused(folder), task)
+    return combine_tracks([track for track, _ in assess_tracks(list_runs(folder), task)], list_refused(folder), task)
 
 
 def judge_sections(results: NetworkResults) -> dict[float, str]:

@@ -7,7 +7,7 @@ import pytest
 
 from helpers.measured_pairs import STATED, MeasuredPair, delayed, write_german
 from pantocheck.conformance.cases.profile_file import Profile, load_profile
-from pantocheck.conformance.network.network_assessment import AssessmentTask, assess_network
+from pantocheck.conformance.network.network_assessment import AssessmentTask, assess_tracks, combine_tracks
 from pantocheck.conformance.network.run_collection import import_files, list_refused, list_runs, open_collection
 from pantocheck.conformance.network.section_grading import GradedPassage, grade_run
 from pantocheck.conformance.pages.html import render_html
@@ -78,7 +78,7 @@ def judge(graded: list[GradedPassage]) -> list[tuple[str, str]]:
 
 def assess(runs: Path, profile: Profile, by: tuple[str, ...] = ("section", "pantograph")) -> NetworkResults:
     task = AssessmentTask(profile, "provisional", by, 0.06)  # type: ignore[arg-type]
-    return assess_network(list_runs(runs), list_refused(runs), task)
+    return combine_tracks([track for track, _ in assess_tracks(list_runs(runs), task)], list_refused(runs), task)
 
 
 def test_the_uplift_is_graded_with_its_own_clock(tmp_path: Path) -> None:
