@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.signal
 from numpy.typing import NDArray
 
 from helpers.extreme_runs import build_case, list_kinds, simulate
@@ -18,7 +19,7 @@ from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.check import COARSEST_STEP_M, CheckName
-from pantocheck.conformance.runs.implied_force import IMPLIED_FORCE
+from pantocheck.conformance.runs.implied_force import IMPLIED_FORCE, _taper_ends
 from pantocheck.conformance.runs.support_coincidence import (
     _compare_datums,
     _compare_supports,
@@ -231,3 +232,8 @@ def test_swapped_pantographs_are_found(run: Run, channels: tuple[str, ...]) -> N
     case, record = run
     swapped = replace(record, **{name: getattr(record, name)[::-1] for name in channels})
     assert list_kinds(case, swapped) != {}
+
+
+def test_ends_of_the_force_fade_as_under_a_tukey_window() -> None:
+    """Half a cosine over 10.5 of 101 samples at both ends, to rounding."""
+    assert _taper_ends(101, 10.5) == pytest.approx(scipy.signal.windows.tukey(101, 21 / 101), abs=1e-14)
