@@ -11,7 +11,9 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.record_uncertainty import draw_lengths
 from pantocheck.conformance.quantities.uncertainty import Uncertainty
+from pantocheck.conformance.records.length_uncertainty import SubRecordRange
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.runs.system import Delivered
 
@@ -120,6 +122,12 @@ def test_record_of_the_section_alone_names_what_is_not_known(case_250: Case) -> 
     result = grade_case(case_250, Delivered(cut), "secondary")
     assert {row.uncertainty for row in result.criteria} <= {0.0, None}  # the record has rate and digits of the case
     assert result.uncertainty_basis["start"].startswith("not known")
+
+
+def test_range_of_a_short_record_is_drawn_evenly_to_both_sides() -> None:
+    """Quartiles of 1,000 equally likely deviations within 0.4 N: three standard errors of the median are 0.04 N."""
+    draws = draw_lengths({1: {"std_force_N": SubRecordRange(0.4)}}, 32 * "ab")[1]["std_force_N"]
+    assert np.quantile(draws, [0.0, 0.25, 0.5, 0.75, 1.0]) == pytest.approx([-0.4, -0.2, 0.0, 0.2, 0.4], abs=0.04)
 
 
 def test_static_case_has_the_discretisation_only() -> None:
