@@ -1,5 +1,6 @@
 """Verdicts of the procedure: claims need runs under their conditions, and missing steps never pass."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ from helpers.criterion_fixtures import build_requirement
 from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict, worst_verdict
 from pantocheck.conformance.grading.criterion_grading import build_criterion
 from pantocheck.conformance.grading.procedure_verdict import (
+    _judge_case,
     decide_procedure,
     describe_closest,
     judge_claim,
@@ -160,3 +162,11 @@ def test_an_exact_value_on_its_limit_has_no_margin() -> None:
     assert describe_closest([(None, exact)])["margin"] is None
     assert describe_closest([(None, exact), (None, smaller)])["margin"] == pytest.approx(0.2)
     assert describe_closest([(None, exact.model_copy(update={"uncertainty": 0.01}))])["margin"] == 0
+
+
+def test_acceptance_changes_the_verdict_of_unconfirmed_cases_alone() -> None:
+    cases: list[Any] = [SimpleNamespace(verdict=verdict, library="identical") for verdict in WORST_FIRST]
+    judged = {
+        (case.verdict, accepted): _judge_case(case, True, accepted) for case in cases for accepted in (True, False)
+    }
+    assert {key: found for key, found in judged.items() if found != key[0]} == {("unconfirmed", True): "pass"}
