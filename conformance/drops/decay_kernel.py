@@ -8,6 +8,7 @@ because w_k N dt is a multiple of 2 pi. The model thus includes leakage: no wind
 noise remain uncorrelated.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -34,13 +35,12 @@ def decay_kernel(poles: ComplexArray, omega: RealArray, dt: float, n: int) -> Co
 
 def kernel_and_derivative(
     poles: ComplexArray, omega: RealArray, dt: float, n: int
-) -> tuple[ComplexArray, ComplexArray]:
-    """Kernel [-] and its derivative with respect to lambda [s], each (k, m); parameters as in `decay_kernel`."""
+) -> tuple[ComplexArray, Callable[[], ComplexArray]]:
+    """Kernel [-], and a function that computes its derivative by lambda [s], each (k, m); see `decay_kernel`."""
     growth = np.expm1(poles * (n * dt))
     inverse = 1 / _one_minus_q(poles, omega, dt)
     value = inverse * -growth
-    slope = dt * (inverse * (value - n * (1 + growth)) - value)
-    return np.asarray(value), np.asarray(slope)
+    return np.asarray(value), lambda: np.asarray(dt * (inverse * (value - n * (1 + growth)) - value))
 
 
 def _one_minus_q(poles: ComplexArray, omega: RealArray, dt: float) -> ComplexArray:
@@ -49,7 +49,7 @@ def _one_minus_q(poles: ComplexArray, omega: RealArray, dt: float) -> ComplexArr
     With one exponential per pole and per line, instead of one per pair, it takes a fifth of the time.
     """
     at_line = np.expm1(-1j * dt * omega)
-    return np.asarray(-np.outer(1 + at_line, np.expm1(poles * dt)) - at_line[:, None])
+    return np.asarray(-((1 + at_line)[:, None] * np.expm1(poles * dt)) - at_line[:, None])
 
 
 def join_conjugates(poles: ComplexArray) -> ComplexArray:

@@ -200,7 +200,8 @@ def _refine(poles: ComplexArray, block: ForcedBlock, noise: RealArray) -> Comple
 
     def build(trial: ComplexArray) -> NormalEquations:
         fit = _linearise(trial, block, noise)
-        return NormalEquations(fit.cost, fit.jacobian.T @ fit.jacobian, -(fit.jacobian.T @ fit.residual.ravel()))
+        matrix, gradient = fit.jacobian.T @ fit.jacobian, -(fit.jacobian.T @ fit.residual.ravel())
+        return NormalEquations(fit.cost, lambda: (matrix, gradient))
 
     return minimise_cost(poles, build, REFINING_STEPS, tolerance=1e-3).poles
 

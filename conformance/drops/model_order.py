@@ -129,12 +129,16 @@ def _add_poles(poles: ComplexArray, blocks: list[DataBlock], centres: list[float
         trial = find_best_candidate(local, centre) if local.blocks else None
         if trial is None or trial[1] < 0.3 * least:
             continue
-        before = refine_poles(local.poles, local.blocks, iterations=10, tolerance=0.1)
         after = refine_poles(np.append(local.poles, trial[0]), local.blocks, iterations=60, tolerance=0.1)
-        if before.cost - after.cost > least:
+        if _cost_exceeds(local, after.cost + least):
             poles = np.concatenate([poles[~local.near], after.poles])
             fits = [solve_residues(poles, data) for data in blocks]
     return np.asarray(poles[np.argsort(poles.imag)])
+
+
+def _cost_exceeds(local: "LocalFit", limit: float) -> bool:
+    """Whether the cost of a local fit exceeds a limit; its poles are refined only if they exceed it before."""
+    return all(refine_poles(local.poles, local.blocks, steps, tolerance=0.1).cost > limit for steps in (0, 10))
 
 
 def _remove_poles(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
@@ -150,10 +154,9 @@ def _remove_poles(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
         if not local.blocks:
             continue
         others = local.poles[np.abs(local.poles - poles[nearest]) > 0]
-        complete = refine_poles(local.poles, local.blocks, iterations=10, tolerance=0.1)
         without = refine_poles(others, local.blocks, iterations=15, tolerance=0.1)
         # The threshold is lower than that for adding; otherwise a pole near it would be added and removed repeatedly.
-        if without.cost - complete.cost < 0.7 * least:
+        if _cost_exceeds(local, without.cost - 0.7 * least):
             poles = _keep_in_band(np.concatenate([poles[~local.near], without.poles]), blocks)
             fits = [solve_residues(poles, data) for data in blocks]
     return np.asarray(poles[np.argsort(poles.imag)])

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
@@ -9,13 +10,8 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
-from pantocheck.conformance.drops.decay_kernel import (
-    join_conjugates,
-    kernel_and_derivative,
-    real_columns,
-    stack_real_imaginary,
-)
-from pantocheck.conformance.drops.projection import REFINEMENTS, DataBlock, eliminate_columns, prepare_elimination
+from pantocheck.conformance.drops.decay_kernel import join_conjugates, kernel_and_derivative, real_columns
+from pantocheck.conformance.drops.projection import REFINEMENTS, DataBlock, prepare_elimination
 
 SMALLEST_DAMPING_RATIO = 1e-6
 """Lower limit of a damping ratio [-]; slower decays are not observable in a record of some minutes."""
@@ -30,17 +26,26 @@ class RefinedPoles:
 
     poles: ComplexArray
     """Poles, (m,) [1/s]."""
-    cost: float
-    """Sum of squared residuals, with channels in units of their noise [-]."""
-    information: RealArray
-    """Fisher information of the decay rates [s], followed by the angular frequencies [s/rad], (2 m, 2 m)."""
+    equations: "NormalEquations"
+    """Normal equations at the poles, in the order of the last step."""
+    order: NDArray[np.intp]
+    """Index of each pole in that order, (m,)."""
+
+    @property
+    def cost(self) -> float:
+        """Sum of squared residuals, with channels in units of their noise [-]."""
+        return self.equations.cost
 
     @property
     def covariance(self) -> RealArray:
         """Covariance of the decay rates [1/s], followed by the angular frequencies [rad/s], (2 m, 2 m)."""
-        scale = np.sqrt(np.maximum(np.diag(self.information), np.finfo(float).tiny))
-        both = np.outer(scale, scale)
-        return np.asarray(scipy.linalg.pinvh(self.information / both) / both)
+        if not self.order.size:
+            return np.zeros((0, 0))
+        both = np.concatenate([self.order, self.order + self.order.size])
+        information = self.equations.matrix[np.ix_(both, both)]
+        scale = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
+        units = np.outer(scale, scale)
+        return np.asarray(scipy.linalg.pinvh(information / units) / units)
 
 
 def refine_poles(
@@ -63,10 +68,8 @@ def minimise_cost(
     """Minimise the cost of the normal equations that `build` gives at poles; parameters as in `refine_poles`."""
     poles = poles[np.argsort(poles.imag)]
     current = build(poles)
-    if not poles.size:
-        return RefinedPoles(poles, current.cost, np.zeros((0, 0)))
     damping = 1e-3
-    for _ in range(iterations):
+    for _ in range(iterations if poles.size else 0):
         trial_poles = _step(poles, current.matrix, current.gradient, damping)
         trial = build(trial_poles)
         gain = current.cost - trial.cost
@@ -79,24 +82,23 @@ def minimise_cost(
         else:
             damping *= 10
     order = np.argsort(poles.imag)
-    both = np.concatenate([order, order + poles.size])
-    return RefinedPoles(poles[order], current.cost, current.matrix[np.ix_(both, both)])
+    return RefinedPoles(poles[order], current, order)
 
 
 def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: float) -> ComplexArray:
     m, decay = poles.size, -poles.real
     scale = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
-    normalised = matrix / np.outer(scale, scale)
-    normalised[np.diag_indices_from(normalised)] += damping
+    normalised = matrix / (scale[:, None] * scale)
+    normalised.flat[:: scale.size + 1] += damping
     right = gradient / scale
     _, change, failed = dposv(normalised, right)
     if failed:
         change = np.linalg.lstsq(normalised, right, rcond=1e-14)[0]
     change = change / scale
     # The model is nearly linear within a threefold decay rate and a frequency shift of a few bandwidths.
-    decay_new = np.clip(decay + change[:m], decay / 3, decay * 3)
+    decay_new = np.minimum(np.maximum(decay + change[:m], decay / 3), decay * 3)
     reach = 3 * np.maximum(decay, 0.02)
-    omega = np.maximum(poles.imag + np.clip(change[m:], -reach, reach), 1e-3)
+    omega = np.maximum(poles.imag + np.minimum(np.maximum(change[m:], -reach), reach), 1e-3)
     return np.asarray(-np.maximum(decay_new, SMALLEST_DAMPING_RATIO * omega) + 1j * omega)
 
 
@@ -108,8 +110,22 @@ class NormalEquations:
     """
 
     cost: float
-    matrix: RealArray
-    gradient: RealArray
+    derive: Callable[[], tuple[RealArray, RealArray]]
+    """Function that computes matrix and gradient, when one of them is read first."""
+
+    @cached_property
+    def _derived(self) -> tuple[RealArray, RealArray]:
+        return self.derive()
+
+    @property
+    def matrix(self) -> RealArray:
+        """Matrix J'J."""
+        return self._derived[0]
+
+    @property
+    def gradient(self) -> RealArray:
+        """Gradient J'r."""
+        return self._derived[1]
 
 
 def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> NormalEquations:
@@ -117,20 +133,46 @@ def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> Norm
 
     The residues of each channel are eliminated.
     """
+    parts = [
+        _build_white(poles, data) if data.whitening is None else add_clock_rates(poles, data, NO_SENSORS)
+        for data in blocks
+    ]
+    if len(parts) == 1:
+        return parts[0]
+
+    def derive() -> tuple[RealArray, RealArray]:
+        none = np.zeros(2 * poles.size)
+        return (
+            sum((part.matrix for part in parts), np.outer(none, none)),
+            sum((part.gradient for part in parts), none),
+        )
+
+    return NormalEquations(sum(part.cost for part in parts), derive)
+
+
+def _build_white(poles: ComplexArray, data: DataBlock) -> NormalEquations:
+    """Normal equations of a block with white noise, whose channels have common columns."""
     m = poles.size
-    cost, matrix, gradient = 0.0, np.zeros((2 * m, 2 * m)), np.zeros(2 * m)
-    for data in blocks:
-        if data.whitening is not None:
-            part = add_clock_rates(poles, data, NO_SENSORS)
-            cost, matrix, gradient = cost + part.cost, matrix + part.matrix, gradient + part.gradient
-            continue
-        value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
-        columns, derivative = np.hstack([real_columns(value), data.residual_terms]), real_columns(slope)
-        fit = eliminate_columns(columns, stack_real_imaginary(data.spectrum), derivative)
-        gram, correlation = fit.remainder.T @ fit.remainder, derivative.T @ fit.residual
-        cost += float(np.sum(fit.residual**2))
-        _accumulate(matrix, gradient, gram, correlation, fit.coefficients[: 2 * m])
-    return NormalEquations(cost, matrix, gradient)
+    value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
+    solve = prepare_elimination(np.hstack([real_columns(value), data.residual_terms]))
+    coefficients, residual = solve(data.signals, 1 + REFINEMENTS)
+
+    def derive() -> tuple[RealArray, RealArray]:
+        """With a = p + i s, d(model)/d(delta) = -(p D1 + s D2) and d(model)/d(omega) = -s D1 + p D2."""
+        derivative = real_columns(slope())
+        remainder = solve(derivative, 1)[1]
+        gram, correlation = remainder.T @ remainder, derivative.T @ residual
+        p, s = coefficients[:m], coefficients[m : 2 * m]
+        pp, ps, ss = p @ p.T, p @ s.T, s @ s.T
+        g11, g12, g21, g22 = gram[:m, :m], gram[:m, m:], gram[m:, :m], gram[m:, m:]
+        cross = ps * g11 - pp * g12 + ss * g21 - ps.T * g22
+        own = pp * g11 + ps * g12 + ps.T * g21 + ss * g22
+        last = ss * g11 - ps.T * g12 - ps * g21 + pp * g22
+        matrix = np.vstack([np.hstack([own, cross]), np.hstack([cross.T, last])])
+        c1, c2 = correlation[:m], correlation[m:]
+        return matrix, np.concatenate([-np.sum(p * c1 + s * c2, axis=1), np.sum(-s * c1 + p * c2, axis=1)])
+
+    return NormalEquations(float(np.sum(residual**2)), derive)
 
 
 def add_clock_rates(poles: ComplexArray, data: DataBlock, sensors: NDArray[np.bool_]) -> NormalEquations:
@@ -145,30 +187,16 @@ def add_clock_rates(poles: ComplexArray, data: DataBlock, sensors: NDArray[np.bo
         Normal equations of decay rates, angular frequencies and rates, (2 m + s).
     """
     value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
-    columns, derivative = np.hstack([real_columns(value), data.residual_terms]), real_columns(slope)
-    solve = prepare_elimination(data.expand(columns))
+    solve = prepare_elimination(data.expand(np.hstack([real_columns(value), data.residual_terms])))
     coefficients, residual = solve(data.signals, 1 + REFINEMENTS)
-    residues = coefficients.reshape(-1, data.spectrum.shape[1])[: derivative.shape[1]]
-    # A fast clock shows lower poles at its sensor.
-    slower = -np.concatenate([-poles.real, poles.imag])
-    rates = [data.weigh_slopes(derivative, residues * mask) @ slower for mask in sensors]
-    jacobian = solve(np.column_stack([data.weigh_slopes(derivative, residues), *rates]), 1)[1]
-    return NormalEquations(float(np.sum(residual**2)), jacobian.T @ jacobian, (jacobian.T @ residual)[:, 0])
 
+    def derive() -> tuple[RealArray, RealArray]:
+        derivative = real_columns(slope())
+        residues = coefficients.reshape(-1, data.spectrum.shape[1])[: derivative.shape[1]]
+        # A fast clock shows lower poles at its sensor.
+        slower = -np.concatenate([-poles.real, poles.imag])
+        rates = [data.weigh_slopes(derivative, residues * mask) @ slower for mask in sensors]
+        jacobian = solve(np.column_stack([data.weigh_slopes(derivative, residues), *rates]), 1)[1]
+        return jacobian.T @ jacobian, (jacobian.T @ residual)[:, 0]
 
-def _accumulate(
-    matrix: RealArray, gradient: RealArray, gram: RealArray, correlation: RealArray, residues: RealArray
-) -> None:
-    """Add one block: with a = p + i s, d(model)/d(delta) = -(p D1 + s D2) and d(model)/d(omega) = -s D1 + p D2."""
-    m = gram.shape[0] // 2
-    p, s = residues[:m], residues[m:]
-    pp, ps, ss = p @ p.T, p @ s.T, s @ s.T
-    g11, g12, g21, g22 = gram[:m, :m], gram[:m, m:], gram[m:, :m], gram[m:, m:]
-    matrix[:m, :m] += pp * g11 + ps * g12 + ps.T * g21 + ss * g22
-    cross = ps * g11 - pp * g12 + ss * g21 - ps.T * g22
-    matrix[:m, m:] += cross
-    matrix[m:, :m] += cross.T
-    matrix[m:, m:] += ss * g11 - ps.T * g12 - ps * g21 + pp * g22
-    c1, c2 = correlation[:m], correlation[m:]
-    gradient[:m] += -np.sum(p * c1 + s * c2, axis=1)
-    gradient[m:] += np.sum(-s * c1 + p * c2, axis=1)
+    return NormalEquations(float(np.sum(residual**2)), derive)

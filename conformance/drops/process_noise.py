@@ -102,7 +102,7 @@ def update_components(
         updates: Number of updates.
     """
     value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
-    columns, derivative = np.hstack([real_columns(value), data.residual_terms]), real_columns(slope)
+    columns, derivative = np.hstack([real_columns(value), data.residual_terms]), real_columns(slope())
     inside = (noise.poles.imag >= data.omega[0]) & (noise.poles.imag <= data.omega[-1])
     spread = np.array([np.interp(data.omega, noise.nodes, unit) for unit in np.eye(noise.nodes.size)])
     moved = np.flatnonzero(spread.sum(axis=1) > 0.3 * spread.sum(axis=1).max())

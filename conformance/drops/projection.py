@@ -13,6 +13,7 @@ References:
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -55,7 +56,7 @@ class DataBlock:
     whitening: ComplexArray | None = None
     """Inverse of the triangular factor of the covariance of the channels at each line, (k, c, c); None: white noise."""
 
-    @property
+    @cached_property
     def omega(self) -> RealArray:
         """Angular frequency of the lines [rad/s]."""
         return np.asarray(2 * np.pi * self.lines / (self.n * self.dt))
@@ -65,7 +66,7 @@ class DataBlock:
         """Duration [s]."""
         return self.n * self.dt
 
-    @property
+    @cached_property
     def signals(self) -> RealArray:
         """Signals of the least-squares problem in units of the noise: (2 k, c), or (2 k c, 1) with a whitening."""
         if self.whitening is None:
@@ -221,38 +222,13 @@ REFINEMENTS = 2
 """Number of refinements of a solution; each reduces its error by 1e-16 times the squared condition number."""
 
 
-@dataclass(frozen=True)
-class Elimination:
-    """Signals without their part in the span of columns."""
-
-    coefficients: RealArray
-    """Coefficients of the columns in x, (m, c); of dependent columns those with the smallest norm."""
-    residual: RealArray
-    """Residual of x, (n, c)."""
-    remainder: RealArray
-    """Residual of the other signals, (n, d)."""
-
-
-def eliminate_columns(columns: RealArray, x: RealArray, others: RealArray) -> Elimination:
-    """Subtract from signals their part in the span of columns.
-
-    Args:
-        columns: Columns, n >= m, (n, m).
-        x: Signals whose coefficients and residual are accurate to rounding, (n, c).
-        others: Signals whose coefficients are not needed, (n, d). Their solution is not refined: the error of the
-            remainder lies in the span of the columns, so that products of remainders have the square of its relative
-            error.
-
-    Returns:
-        Coefficients and residual of x, and remainder of the other signals.
-    """
-    solve = prepare_elimination(columns)
-    coefficients, residual = solve(x, 1 + REFINEMENTS)
-    return Elimination(coefficients, residual, solve(others, 1)[1])
-
-
 def prepare_elimination(columns: RealArray) -> Callable[[RealArray, int], tuple[RealArray, RealArray]]:
-    """Function of right-hand sides and a number of passes that returns their coefficients and residual."""
+    """Function of signals, (n, c), and a number of passes that returns their coefficients and their residual.
+
+    After one pass, the error of the residual lies in the span of the columns, (n, m) with n >= m, so that products of
+    residuals have the square of its relative error. After 1 + `REFINEMENTS`, both are accurate to rounding; of
+    dependent columns, the coefficients are those with the smallest norm.
+    """
     try:
         return _factor_gram_matrix(columns).solve
     except np.linalg.LinAlgError:
@@ -266,12 +242,8 @@ def prepare_elimination(columns: RealArray) -> Callable[[RealArray, int], tuple[
 
 
 def solve_least_squares(columns: RealArray, x: RealArray) -> tuple[RealArray, RealArray]:
-    """Solve columns c = x, (n, m) and (n, c), by least squares: coefficients, (m, c), and residual, (n, c).
-
-    Of dependent columns, the coefficients are those with the smallest norm.
-    """
-    solved = eliminate_columns(columns, x, np.zeros((x.shape[0], 0)))
-    return solved.coefficients, solved.residual
+    """Solve columns c = x, (n, m) and (n, c), by least squares: coefficients, (m, c), and residual, (n, c)."""
+    return prepare_elimination(columns)(x, 1 + REFINEMENTS)
 
 
 def factor_columns(columns: RealArray) -> tuple[RealArray, RealArray]:

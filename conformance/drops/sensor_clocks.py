@@ -155,7 +155,7 @@ def build_equations(fit: LineFit, block: FittedBlock, sensors: Sequence[int]) ->
             spread = np.eye(2 * m, gradient.size)
             spread[:, 2 * m + number] = slower
             matrix, gradient = matrix + spread.T @ part.matrix @ spread, gradient + spread.T @ part.gradient
-    return NormalEquations(0.0, matrix, gradient)
+    return NormalEquations(0.0, lambda: (matrix, gradient))
 
 
 def _find_start(fit: LineFit, first: int, sensor: int) -> tuple[float, float]:

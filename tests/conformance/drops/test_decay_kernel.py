@@ -44,7 +44,7 @@ def test_columns_of_kernels_have_their_derivatives_and_residues() -> None:
     poles = np.array([-0.05 + 6.0j, -0.2 + 11.3j])
     omega = 2 * np.pi * np.arange(5, 60) / (N * DT)
     h = 1e-4
-    slope = kernel_and_derivative(poles, omega, DT, N)[1]
+    slope = kernel_and_derivative(poles, omega, DT, N)[1]()
     difference = (decay_kernel(poles + h, omega, DT, N) - decay_kernel(poles - h, omega, DT, N)) / (2 * h)
     assert np.abs(slope - difference).max() < 1e-5 * np.abs(slope).max()
     poles, residue = np.array([-0.1 + 5.0j]), 0.7 - 1.9j

@@ -18,9 +18,9 @@ from pantocheck.conformance.drops.model_order import (
 from pantocheck.conformance.drops.projection import (
     DataBlock,
     build_block,
-    eliminate_columns,
     estimate_noise,
     factor_columns,
+    prepare_elimination,
     residue_deviation,
     solve_factor,
     solve_least_squares,
@@ -134,7 +134,7 @@ def test_products_of_remainders_are_those_of_householder(condition: float, toler
     q = scipy.linalg.qr(columns, mode="economic")[0]
     expected = others - q @ (q.T @ others)
     expected -= q @ (q.T @ expected)
-    remainder = eliminate_columns(columns, others, others).remainder
+    remainder = prepare_elimination(columns)(others, 1)[1]
     size = np.linalg.norm(expected, axis=0)
     assert (remainder.T @ remainder) / np.outer(size, size) == pytest.approx(
         expected.T @ expected / np.outer(size, size), abs=tolerance
