@@ -64,8 +64,8 @@ UNPAIRED = "uplift and positions of the supports are needed together"
         ("time", lambda r: {"time": r.time**2}, "not evenly spaced in time"),
         (
             "force",
-            lambda r: {"force": put(r.force, (1, 7), math.nan)},
-            "1 values are not finite, the first at sample 8",
+            lambda r: {"force": put(r.force, (1, [7, 9]), math.nan)},
+            "2 values are not finite, the first at sample 8",
         ),
         ("force", lambda r: {"force": put(r.force, (1, 7), 2e9)}, r"sample 8 has the impossible value 2e\+09"),
         ("force", lambda r: {"force": put(r.force, (1, 7), -1.01e9)}, r"sample 8 has the impossible value -1\.01e\+09"),
