@@ -49,13 +49,13 @@ def test_gradient_is_that_of_the_cost() -> None:
             assert -difference / (4 * step) == pytest.approx(
                 gradient[part], rel=1e-3, abs=1e-3 * np.abs(gradient).max()
             )
-    # A slow clock lowers all poles of its sensor by one share.
+    # A slow clock lowers all poles of its sensor by one share; the share of the decay is 5e-5 of this gradient.
     block: Any = SimpleNamespace(data=data[0], noise=np.ones(2), process=None)
     channels = (SimpleNamespace(sensor=1),) * 2
     record = SimpleNamespace(decay=SimpleNamespace(channels=channels), columns=slice(0, 2), block=block)
     fit: Any = SimpleNamespace(poles=disturbed, records=(record,))
     slow, fast = (build_normal_equations(disturbed * share, data).cost for share in (1 - step, 1 + step))
-    assert build_equations(fit, block, [1]).gradient[-1] == pytest.approx((fast - slow) / (4 * step), rel=1e-3)
+    assert build_equations(fit, block, [1]).gradient[-1] == pytest.approx((fast - slow) / (4 * step), rel=1e-6)
 
 
 def test_start_poles_of_a_clean_decay_are_exact_and_found_once() -> None:
