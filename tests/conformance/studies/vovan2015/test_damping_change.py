@@ -101,7 +101,7 @@ def test_changes_need_a_value_on_both_sides_and_the_order_both_runs() -> None:
     values = [{2: {"rms_20_50_N": value}} for value in (32.0, 40.0)]
     assert compare_force(*values) == {2: {"change_rms_20_50_pct": 25.0, EARLIER_LEVEL: 32.0}}
     # Ratios of rear to front by hand: 0.5 and 2; a pantograph without the band gives none.
-    before, after = ({1: {"rms_0_5_N": front}, 2: {"rms_0_5_N": rear}} for front, rear in ((20.0, 10.0), (5.0, 10.0)))
+    before, after = ({1: {"rms_0_5_N": front}, 2: {"rms_0_5_N": rear}} for front, rear in ((20.0, 10.0), (0.5, 1.0)))
     ratios = {"smallest_rear_over_front_rms_0_5": 0.5, "largest_rear_over_front_rms_0_5": 2.0}
     assert compare_force(before, after)[0] == ratios
     assert 0 not in compare_force(before, {1: {"rms_0_5_N": 5.0}, 2: {}})
