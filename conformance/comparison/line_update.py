@@ -185,7 +185,7 @@ def update_linear(
         value, slope = differentiate(predict, places, factors, np.sqrt(np.diag(covariance)))
         weighted = whiten @ slope
         left = whiten @ (measured - value + slope @ (factors - estimate.factors))
-        covariance = np.linalg.inv(information + weighted.T @ weighted)
+        covariance = np.asarray(np.linalg.inv(information + weighted.T @ weighted))
         moved = estimate.factors + covariance @ weighted.T @ left
         change = np.abs(moved - factors) / np.sqrt(np.diag(covariance))
         factors = moved
@@ -194,7 +194,7 @@ def update_linear(
     residual = left - weighted @ (factors - estimate.factors)
     freedom = max(measured.size - float(np.trace(covariance @ weighted.T @ weighted)), 1.0)
     misfit = float(residual @ residual) / freedom
-    covariance = np.linalg.inv(information + weighted.T @ weighted / max(misfit, 1.0))
+    covariance = np.asarray(np.linalg.inv(information + weighted.T @ weighted / max(misfit, 1.0)))
     used = UsedData(name=name, values=measured.size, misfit=misfit)
     return LineEstimate(estimate.parameters, np.asarray(factors), np.asarray(covariance), (*estimate.data, used))
 
@@ -250,7 +250,7 @@ def judge_held_out(
         )
         for n, (owner, name, each) in enumerate(passage.values)
     )
-    return rows, float(scipy.stats.chi2.sf(statistic, measured.size))
+    return rows, float(scipy.special.chdtrc(measured.size, statistic))
 
 
 def _build_band_covariance(

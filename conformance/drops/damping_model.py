@@ -240,7 +240,7 @@ def _confidence_intervals(
     found = std * np.sqrt(np.sum((residual[used] / std[used]) ** 2) / freedom)
     scale = np.maximum(np.linalg.norm(columns * weight[:, None], axis=0), np.finfo(float).tiny)
     gain = np.linalg.pinv(columns * weight[:, None] / scale) * weight * np.maximum(found, measured.std) / scale[:, None]
-    width = scipy.stats.t.ppf(0.975, freedom) * np.sqrt(np.sum(gain**2, axis=1))
+    width = scipy.special.stdtrit(freedom, 0.975) * np.sqrt(np.sum(gain**2, axis=1))
     return np.maximum(values - width, 0.0), values + width
 
 

@@ -137,7 +137,7 @@ def _compare(early: tuple[RealArray, RealArray], late: tuple[RealArray, RealArra
     count = max(int(used.sum()), 1)
     squares = (b - a)[used] ** 2 / (later - variance)[used]
     # Values of close modes are correlated: two count as one.
-    usual = float(scipy.stats.chi2.isf(ALARM, count / 2) / (count / 2))
+    usual = float(scipy.special.chdtri(count / 2, ALARM) / (count / 2))
     return max(float(squares.sum()) / count / usual, float(squares.max(initial=0.0)) / ALONE**2)
 
 

@@ -209,7 +209,7 @@ def _refine(poles: ComplexArray, block: ForcedBlock, noise: RealArray) -> Comple
 def _remove_weak(poles: ComplexArray, block: ForcedBlock, noise: RealArray) -> ComplexArray:
     """Poles whose force residues reduce the residual by more than noise does."""
     k, channels = block.motion.shape
-    least = float(scipy.stats.chi2.isf(FALSE_ALARM / (4 * k), 2 + 2 * channels))
+    least = float(scipy.special.chdtri(2 + 2 * channels, FALSE_ALARM / (4 * k)))
     while poles.size:
         columns, _ = _build_columns(poles, block)
         q, r = factor_columns(columns)

@@ -31,7 +31,7 @@ DETERMINED = 0.7
 
 def quantile_95(freedom: float) -> float:
     """Half of a 95 % interval in standard deviations, by Student's distribution for a variance that was estimated."""
-    return float(scipy.stats.t.ppf(0.975, freedom))
+    return float(scipy.special.stdtrit(freedom, 0.975))
 
 
 def list_properties(fit: JointFit, prior: Prior) -> tuple[FittedProperty, ...]:
@@ -84,7 +84,7 @@ def _list_refuted(fit: JointFit, prior: Prior, line: Catenary) -> Iterator[LineD
     of_data = information - np.linalg.inv(prior.covariance[np.ix_(places, places)])
     weighted = information @ change
     statistic = float(weighted @ np.linalg.pinv(of_data, rcond=1e-6, hermitian=True) @ weighted)
-    if scipy.stats.f.sf(statistic / len(places), len(places), fit.freedom) < LEVEL:
+    if scipy.special.fdtrc(len(places), fit.freedom, statistic / len(places)) < LEVEL:
         for place, shift, deviation in zip(places, change, std, strict=True):
             if abs(shift) > max(REFUTED_TENSION, quantile_95(fit.freedom) * deviation):
                 kind = prior.parameters[place].name.removesuffix("_tension")
@@ -110,7 +110,7 @@ def assess_groups(fit: JointFit) -> tuple[GroupResidual, ...]:
         residual, own = fit.ratio_residual[members], fit.ratio_covariance[np.ix_(members, members)]
         relative = residual / measured.damping_ratio[members]
         statistic = float(residual @ np.linalg.solve(own, residual))
-        probability = float(scipy.stats.f.sf(statistic / members.size, members.size, fit.freedom))
+        probability = float(scipy.special.fdtrc(members.size, fit.freedom, statistic / members.size))
         rows.append(
             GroupResidual(
                 group=int(number),

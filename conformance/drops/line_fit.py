@@ -263,7 +263,7 @@ def _inflation(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
         freedom = sum(PRIOR_FREEDOM + noise.freedom[k] for noise, k in zip(driven, nearest, strict=True))
         power = np.mean([noise.power[k] for noise, k in zip(driven, nearest, strict=True)])
         freedom *= (1 + 1 / max(float(power), 1e-3)) ** 2
-        return float(scipy.stats.t.isf(0.025, freedom) / scipy.stats.norm.isf(0.025))
+        return float(scipy.special.stdtrit(freedom, 0.025) / scipy.special.ndtri(0.025))
     energy, count = 0.0, 0
     for block in blocks:
         reach = max(FREQUENCY_REACH * 2 * np.pi / block.data.duration, -2 * pole.real)

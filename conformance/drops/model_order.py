@@ -117,7 +117,7 @@ def detection_threshold(blocks: list[DataBlock]) -> float:
     """Smallest reduction of the squared residual by a pole that is kept."""
     channels = sum(data.spectrum.shape[1] for data in blocks)
     lines = max(data.lines.size for data in blocks)
-    return float(scipy.stats.chi2.isf(FALSE_ALARM / (4 * lines), 2 + 2 * channels))
+    return float(scipy.special.chdtri(2 + 2 * channels, FALSE_ALARM / (4 * lines)))
 
 
 def _add_poles(poles: ComplexArray, blocks: list[DataBlock], centres: list[float] | None) -> ComplexArray:
@@ -206,7 +206,7 @@ def _suspicious_frequencies(blocks: list[DataBlock], fits: list[ProjectionFit]) 
     peaks: list[tuple[float, float]] = []
     for data, fit in zip(blocks, fits, strict=True):
         energy = np.convolve(np.sum(np.abs(data.weigh(fit.residual)) ** 2, axis=1), np.ones(3), mode="same")
-        limit = scipy.stats.chi2.isf(1e-4, 6 * data.spectrum.shape[1])
+        limit = scipy.special.chdtri(6 * data.spectrum.shape[1], 1e-4)
         peaks += [(float(energy[k]), float(data.omega[k])) for k in np.flatnonzero(energy > limit)]
     spacing = 6 * 2 * np.pi / max(data.duration for data in blocks)
     centres: list[float] = []

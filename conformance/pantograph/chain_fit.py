@@ -151,7 +151,7 @@ def compute_intervals(fit: ChainFit, is_noise_stated: bool) -> FitIntervals:
     freedom = max(fit.size - fit.free_count, 1)
     noise = max(fit.variance_ratio, 1.0) if is_noise_stated else fit.variance_ratio
     half_width = np.zeros(fit.values.shape)
-    quantile = scipy.stats.t.ppf((1 + INTERVAL_CONFIDENCE) / 2, freedom)
+    quantile = scipy.special.stdtrit(freedom, (1 + INTERVAL_CONFIDENCE) / 2)
     half_width[fit.problem.free] = quantile * np.sqrt(noise) * deviation / scale
     return FitIntervals(half_width, covariance / np.outer(deviation, deviation))
 
