@@ -14,7 +14,7 @@ CODE = {".py", ".c", ".h", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
-    ("model", "conformance"): 96_255,
+    ("model", "conformance"): 96_249,
     ("templates",): 5_342,
     ("verification",): 20_340,
     ("tests",): 64_123,

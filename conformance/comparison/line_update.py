@@ -186,10 +186,8 @@ def update_linear(
         weighted = whiten @ slope
         left = whiten @ (measured - value + slope @ (factors - estimate.factors))
         covariance = np.asarray(np.linalg.inv(information + weighted.T @ weighted))
-        moved = estimate.factors + covariance @ weighted.T @ left
-        change = np.abs(moved - factors) / np.sqrt(np.diag(covariance))
-        factors = moved
-        if change.max() < LAST_UPDATE:
+        before, factors = factors, estimate.factors + covariance @ weighted.T @ left
+        if np.max(np.abs(factors - before) / np.sqrt(np.diag(covariance))) < LAST_UPDATE:
             break
     residual = left - weighted @ (factors - estimate.factors)
     freedom = max(measured.size - float(np.trace(covariance @ weighted.T @ weighted)), 1.0)
@@ -261,14 +259,10 @@ def _build_band_covariance(
     Errors of measured bands are independent; the change with halved steps is an error of all bands together.
     """
     own = BAND_ERROR * np.array([measured for _, _, measured in passage.values])
-    finer = simulate_bands(replace(passage, case=_halve_steps(passage.case)), line, estimate)(estimate.factors) - value
+    file = passage.case.file
+    halved = replace(passage.case, file=file.model_copy(update={"discretisation": file.discretisation.scale(1 / 2)}))
+    finer = simulate_bands(replace(passage, case=halved), line, estimate)(estimate.factors) - value
     return np.asarray(np.diag(own**2) + np.outer(finer, finer))
-
-
-def _halve_steps(case: Case) -> Case:
-    """Case with element length and time step halved."""
-    finer = {"discretisation": case.file.discretisation.scale(1 / 2)}
-    return replace(case, file=case.file.model_copy(update=finer))
 
 
 def _list_bands(case: Case, record: Record) -> tuple[tuple[int, str, float], ...]:
