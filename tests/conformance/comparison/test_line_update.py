@@ -16,7 +16,14 @@ from helpers.toml_edit import edit_toml, write_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.comparison.line_update import begin_estimate, build_updated_line, update_linear
+from pantocheck.conformance.comparison.line_update import (
+    BAND_ERROR,
+    MeasuredPassage,
+    _build_band_covariance,
+    begin_estimate,
+    build_updated_line,
+    update_linear,
+)
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.line.catenary_model import build_catenary
@@ -269,6 +276,22 @@ def test_curved_model_is_solved_at_the_measured_line() -> None:
     assert np.sqrt(found.covariance[0, 0]) == pytest.approx(
         1e-4 / np.linalg.norm(power * 1.03 ** (power - 1)), rel=0.01
     )
+
+
+def test_mesh_is_an_error_of_all_bands_together() -> None:
+    """Bands of one passage with the steps of the case and with half of them; the same arithmetic, so rounding alone."""
+    (case,) = select_cases(["en50318-2002/250"])
+    coarse, fine = (
+        MeasuredPassage(
+            "", case, run_passage(case, discretise(build_catenary(case.line), steps.element_m), steps).record
+        )
+        for steps in (case.file.discretisation, case.file.discretisation.scale(1 / 2))
+    )
+    value, halved = (np.array([each for _, _, each in passage.values]) for passage in (coarse, fine))
+    assert np.max(np.abs(halved / value - 1)) > 0.002  # the mesh shows in the bands
+    found = _build_band_covariance(coarse, case.line, begin_estimate(case.line), value)
+    expected = np.diag((BAND_ERROR * value) ** 2) + np.outer(halved - value, halved - value)
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-9 * float(expected.max()))
 
 
 def test_stiffer_steady_arm_is_a_shorter_one() -> None:
