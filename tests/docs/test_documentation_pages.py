@@ -29,8 +29,9 @@ def test_no_text_for_a_user_names_a_file_of_the_clone() -> None:
 
 
 def _list_texts(path: Path) -> Iterator[str]:
-    """Texts of a file that are not docstrings."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    """Texts with the name of such a file, outside of docstrings."""
+    source = path.read_text(encoding="utf-8")
+    tree = ast.parse(source if FILE.search(source) else "")
     described = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     for node in ast.walk(tree):
         text = node.value if isinstance(node, ast.Constant) and id(node) not in described else None

@@ -4,6 +4,17 @@ from dataclasses import replace
 from typing import Any
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.runs.reference_simulator import UnrefinedSimulator
+
+COARSE = (2.0, 0.004)
+"""Element length [m] and time step [s] of short passages."""
+
+
+def run_unrefined(case: Case) -> CaseResult:
+    """Result of a case on the reference simulator, without a finer mesh."""
+    return grade_case(case, UnrefinedSimulator().run(case), "secondary")
 
 
 def shorten_case(case: Case, speed_km_h: float, mass_coefficient: float, pantographs: int) -> Case:

@@ -25,9 +25,9 @@ def test_fit_of_the_true_modes_is_the_line(line: SampledLine) -> None:
 
 @pytest.mark.parametrize(("scatter", "widest"), [(0.0, 2.6), (0.005, 1.3)])
 def test_intervals_of_sampled_modes_contain_the_truth(line: SampledLine, scatter: float, widest: float) -> None:
-    """40 draws of 4 coefficients, which are correlated; the table has more, with median widths of 2.1 and 1.06."""
+    """20 draws of 4 coefficients, which are correlated; the table has more, with median widths of 2.1 and 1.06."""
     inside, ratio = [], []
-    for draw in range(40):
+    for draw in range(20):
         fit = sample_fit(line, scatter, np.random.default_rng(draw))
         low, high = build_intervals(fit)
         inside.append((low <= line.true) & (line.true <= high))

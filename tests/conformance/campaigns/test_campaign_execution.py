@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from helpers.cheap_campaign import (
+    GATED,
     OnOneLine,
     ThisProcess,
     build_table,
@@ -38,11 +39,10 @@ from pantocheck.conformance.campaigns.run_executors import (
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.model.dynamics import recording
 
-RUNS = 200
-"""Runs in two processes: some are finished at every kill, and those after the hundredth wait for a gate."""
+RUNS = 60
+"""Runs in two processes: some are finished at every kill, and half of them wait for a gate."""
 
-GATE, GATED = "gate", 100
-
+GATE = "gate"
 
 END_S, LOAD = 2.0, 5.0
 """Time after which no worker of a killed driver may be left, and its factor: other tests load the machine meanwhile."""

@@ -183,7 +183,7 @@ def spoil_uplift(record: Record) -> Record:
     return replace(record, support_uplift=record.support_uplift * (1 + (record.support_position == 300))[:, None])
 
 
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(spoil=st.sampled_from([spoil_force, spoil_uplift]), speed_alone=st.booleans(), data=st.data())
 def test_removing_information_never_gives_a_pass(
     twin: Case,

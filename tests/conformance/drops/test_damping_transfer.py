@@ -39,7 +39,7 @@ def other(measured: LineFile) -> LineFile:
 @pytest.fixture(scope="module")
 def fitted(measured: LineFile) -> DampingResults:
     return build_damping_results(
-        read_modes(MODES), build_catenary(measured), 0.75, "modes.json", FitOptions(wires="common")
+        read_modes(MODES), build_catenary(measured), ELEMENT, "modes.json", FitOptions(wires="common")
     )
 
 
@@ -78,7 +78,7 @@ def test_condition_names_other_materials_and_other_dampers(
 
 def test_command_writes_the_table_of_another_line(tmp_path: Path) -> None:
     result = pantocheck(
-        "drop", "fit", MODES, "--line", "vovan2015/mass-drop/stand-in", "--element", "1.5", "--wires", "common",
+        "drop", "fit", MODES, "--line", "vovan2015/mass-drop/stand-in", "--element", ELEMENT, "--wires", "common",
         "--transfer", "vovan2015/mass-drop/stand-in", "--out", tmp_path,
     )  # fmt: skip
     assert "intervals of at least 95 %" in result.output

@@ -6,7 +6,6 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
 from io import BytesIO
-from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -31,13 +30,14 @@ from pantocheck.conformance.results.damping_format import Coefficient, DampingRe
 from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode, ModesFile, SensorShape
 from pantocheck.model import Catenary, Kind, ModalBand, Rayleigh, discretise
 from pantocheck.model.modal.modes import compute_modes, damping_ratios, deflection_at
+from verification.tables.line_coverage import DAMPING, SPANS, build_line
 
 CASE = "vovan2015/mass-drop/printed"
 """Case with six spans of 63 m, contact wire 20 kN, messenger wire 14 kN."""
 
-SPANS = (63.0, 63.0, 58.5, 63.0, 54.0, 63.0)
 SENSORS = (("contact wire", "CW", 195.75), ("contact wire", "CW", 144.0), ("messenger wire", "MW", 272.25))
-DAMPING = {Kind.CONTACT_WIRE: Rayleigh(0.055, 5e-5), Kind.MESSENGER_WIRE: Rayleigh(0.075, 8e-5)}
+ELEMENT = 2.0
+"""Length of the elements of lines and fits [m]."""
 MODES = Path(__file__).parents[2] / "data" / "modes" / "T1.json.xz"
 
 
@@ -52,28 +52,15 @@ def catenary(file: LineFile) -> Catenary:
 
 
 @pytest.fixture(scope="module")
-def unequal(file: LineFile, catenary: Catenary) -> Catenary:
-    """The line with unequal spans: every part moves with its span. Both wires have a known damping."""
-    old, new = np.array(file.geometry.span_limits), np.array([0.0, *accumulate(SPANS)])
-
-    def move(parts: Sequence) -> tuple:
-        return tuple(replace(part, position=float(np.interp(part.position, old, new))) for part in parts)
-
-    return replace(
-        catenary,
-        wires=tuple(replace(wire, end=float(new[-1]), stagger=None) for wire in catenary.wires),
-        droppers=move(catenary.droppers),
-        steady_arms=move(catenary.steady_arms),
-        messenger_supports=move(catenary.messenger_supports),
-        damping=DAMPING,
-        modal_damping=(),
-    )
+def unequal() -> Catenary:
+    """The line with unequal spans. Both wires have a known damping."""
+    return build_line()
 
 
 @pytest.fixture(scope="module")
 def measured(unequal: Catenary) -> tuple[Mode, ...]:
     """Modes of the line with unequal spans as an identification of perfect records would write them."""
-    mesh = discretise(unequal, 1.0, tuple(x for _, _, x in SENSORS))
+    mesh = discretise(unequal, ELEMENT, tuple(x for _, _, x in SENSORS))
     modes = compute_modes(mesh, 30)
     shapes = np.array([deflection_at(mesh, modes, mesh.mesh.row_of[name, "z"], x) for name, _, x in SENSORS]).T
     line = MeasuredLine(spans_m=SPANS, contact_wire_tension_N=20e3, messenger_wire_tension_N=14e3)
@@ -96,6 +83,11 @@ def measured(unequal: Catenary) -> tuple[Mode, ...]:
     )
 
 
+@pytest.fixture(scope="module")
+def fitted(measured: tuple[Mode, ...], unequal: Catenary) -> DampingResults:
+    return build_damping_results(measured, unequal, ELEMENT, "modes.json")
+
+
 def build_mode(line: MeasuredLine | None, record: str = "T", wire: str = "CW", position: float | None = 30.0) -> Mode:
     sensor = SensorShape(sensor=1, wire=wire, position_m=position, re=1.0, im=0.0)
     return Mode(
@@ -103,7 +95,7 @@ def build_mode(line: MeasuredLine | None, record: str = "T", wire: str = "CW", p
     )
 
 
-def fit_other_line(folder: Path, modes: Sequence[Mode], *options: str) -> tuple[int, str]:
+def fit_other_line(folder: Path, modes: Sequence[Mode], *options: object) -> tuple[int, str]:
     write_model(folder / "modes.json", ModesFile(tuple(modes)))
     command = ("drop", "fit", folder / "modes.json", "--line", CASE, "--out", folder / "fit", *options)
     result = pantocheck(*command, COLUMNS="4000")
@@ -205,7 +197,7 @@ def test_modes_without_facts_or_with_a_missing_fact_hide_no_difference(file: Lin
     assert (comparison.state, len(comparison.differences), len(comparison.missing)) == ("contradicted", 1, 1)
     # Record T1, without facts on the line, is from another line: its frequencies are not those of this one.
     modes = TypeAdapter(list[Mode]).validate_python(json.loads(lzma.decompress(MODES.read_bytes())))
-    results = build_damping_results(modes, catenary, 1.5, "modes.json")
+    results = build_damping_results(modes, catenary, ELEMENT, "modes.json")
     assert (results.line.state, results.line.differences) == ("contradicted", ())
     assert "natural frequencies contradict the line: scatter of the frequencies" in results.warnings[0]
     assert "not confirmed" in results.warnings[1]
@@ -227,9 +219,9 @@ def test_difference_names_the_record_if_there_are_two_lines(file: LineFile, cate
         assert {fact.split(":")[0] for fact in comparison.missing} == {"T4"}
 
 
-def test_fit_on_the_line_of_the_record_returns_its_damping(measured: tuple[Mode, ...], unequal: Catenary) -> None:
+def test_fit_on_the_line_of_the_record_returns_its_damping(fitted: DampingResults) -> None:
     """Perfect modes of the same mesh: every mode is matched, and each coefficient returns within 1 %."""
-    results = build_damping_results(measured, unequal, 1.0, "modes.json")
+    results = fitted
     assert (results.line.state, results.warnings) == ("consistent", ())
     assert (results.matching.modes, results.matching.matched, results.matching.matched_share) == (30, 30, 1.0)
     assert results.matching.lowest_mac == pytest.approx(1.0, abs=1e-6)
@@ -243,15 +235,15 @@ def test_fit_on_the_line_of_the_record_returns_its_damping(measured: tuple[Mode,
     assert Damping.model_validate(tomllib.loads(text)["damping"]).contact_wire.stiffness_coefficient_s > 0
 
 
-def test_modal_damping_replaces_the_stated_damping_in_its_bands(measured: tuple[Mode, ...], unequal: Catenary) -> None:
+def test_modal_damping_replaces_the_stated_damping_in_its_bands(
+    measured: tuple[Mode, ...], unequal: Catenary, fitted: DampingResults
+) -> None:
     """The line states damping of its droppers, and modal damping at all frequencies: droppers add nothing to a mode."""
     # Without the bands, what the droppers add is subtracted, and the coefficients of the wires change.
     droppers = replace(unequal, damping=DAMPING | {Kind.DROPPER: Rayleigh(0.0, 2e-3)})
     banded = replace(droppers, modal_damping=(ModalBand(0.0, 100.0, 0.005),))
-    expected, found, subtracted = (
-        build_damping_results(measured, line, 1.0, "m") for line in (unequal, banded, droppers)
-    )
-    assert found.coefficients == expected.coefficients
+    found, subtracted = (build_damping_results(measured, line, ELEMENT, "m") for line in (banded, droppers))
+    assert found.coefficients == fitted.coefficients
     assert found.stated == ()
     assert [stated.kind for stated in subtracted.stated] == ["dropper"]
     assert subtracted.coefficients != found.coefficients
@@ -275,7 +267,7 @@ def test_other_line_is_refused_before_anything_is_written(tmp_path: Path, measur
 
 
 def test_permitted_other_line_is_marked_in_every_file(tmp_path: Path, measured: tuple[Mode, ...]) -> None:
-    code, output = fit_other_line(tmp_path, measured, "--other-line", "--element", "1.5")
+    code, output = fit_other_line(tmp_path, measured, "--other-line", "--element", ELEMENT)
     assert code == 0
     difference = "length of span 3 is 58.5 m in the record, 63 m on the line"
     assert "warning: The line of the fit is not the line of the record, so that the errors" in output
@@ -328,7 +320,7 @@ def test_each_threshold_counts_alone(matched: int, median_mac: float | None, obs
 def test_coefficient_that_is_not_determined_is_only_a_comment(measured: tuple[Mode, ...], unequal: Catenary) -> None:
     """A single sensor confirms no match: nothing is determined, and damping.toml holds no coefficient."""
     single = [mode.model_copy(update={"sensor_shape": mode.sensor_shape[:1]}) for mode in measured]
-    results = build_damping_results(single, unequal, 1.0, "modes.json")
+    results = build_damping_results(single, unequal, ELEMENT, "modes.json")
     assert (results.matching.median_mac, results.matching.lowest_mac) == (None, None)
     text = write_damping_toml(results)
     damping = tomllib.loads(text)["damping"]
@@ -338,15 +330,16 @@ def test_coefficient_that_is_not_determined_is_only_a_comment(measured: tuple[Mo
 
 
 def test_damping_file_needs_six_pairs_and_safe_names(measured: tuple[Mode, ...], unequal: Catenary) -> None:
-    results = build_damping_results(measured[:6], unequal, 1.0, "modes.json")
-    assert len(results.pairs) == results.matching.matched == 6
     with pytest.raises(InputError, match="only 5 of 5 modes have a computed counterpart, 6 are needed"):
-        build_damping_results(measured[:5], unequal, 1.0, "modes.json")
+        build_damping_results(measured[:5], unequal, ELEMENT, "modes.json")
     other = MeasuredLine(spans_m=SPANS)
     name = "T\n[damping.droppers]\nmass_coefficient_1_s = 9.0\x7f"
     modes = [
-        mode.model_copy(update={"line": other, "record": name}) if i % 2 else mode for i, mode in enumerate(measured)
+        mode.model_copy(update={"line": other, "record": name}) if i % 2 else mode
+        for i, mode in enumerate(measured[:6])
     ]
-    text = write_damping_toml(build_damping_results(modes, unequal, 1.0, "modes.json"))
+    results = build_damping_results(modes, unequal, ELEMENT, "modes.json")
+    assert len(results.pairs) == results.matching.matched == 6
+    text = write_damping_toml(results)
     assert "droppers" not in tomllib.loads(text)["damping"]
     assert "mass_coefficient_1_s = 9.0" in text.splitlines()[0]

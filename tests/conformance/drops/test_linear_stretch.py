@@ -66,4 +66,4 @@ def test_record_without_a_linear_part_is_refused_with_its_residual(modes: LineMo
     with pytest.raises(
         InputError, match=r"no part of 10 s or longer .* residual from 0.3 to .* Hz is .* at S1_z, S2_z"
     ):
-        identify_modes((short,), 3.0)
+        identify_modes((short,), 2.0)

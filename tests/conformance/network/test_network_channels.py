@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from helpers.measured_pairs import STATED, MeasuredPair, delayed, write_german
+from helpers.measured_pairs import STATED, MeasuredPair, write_german, write_masts
 from pantocheck.conformance.cases.profile_file import Profile, load_profile
 from pantocheck.conformance.network.network_assessment import AssessmentTask, assess_tracks, combine_tracks
 from pantocheck.conformance.network.run_collection import import_files, list_refused, list_runs, open_collection
@@ -58,8 +58,7 @@ def collect(pair: MeasuredPair, folder: Path, further: str = "", raised_N: float
     rows[:, 3] += raised_N
     write_german(folder / "zug.csv", ["Zeit [s]", "Weg [m]", "Kraft 1 [N]", "Kraft 2 [N]"], rows)
     if zero_mm:
-        names = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))]
-        write_german(folder / "mast.csv", names, pair.masts() + np.array([0.0, *[zero_mm] * 3]))
+        write_masts(folder, pair.masts() + np.array([0.0, *[zero_mm] * 3]))
     sidecar.write_text(sidecar.read_text(encoding="utf-8") + PLACE + further, encoding="utf-8")
     with open_collection(folder / "runs"):
         (item,) = import_files([sidecar], folder / "runs", None)
@@ -97,7 +96,7 @@ def test_the_uplift_is_graded_with_its_own_clock(tmp_path: Path) -> None:
     page = render_html(build_run_page("x", [item.passage for item in graded]))
     assert "Clocks" in page
     assert quantity_label("max_uplift_at_support_mm") in page
-    wrong = collect(delayed(MeasuredPair(), 1.0), tmp_path / "b")
+    wrong = collect(MeasuredPair(offset=2.217), tmp_path / "b")
     skipped = grade(wrong, wide)
     assert judge(skipped) == [("front", "skip"), ("rear", "skip")] * 2
     assert "mast" in skipped[0].passage.reason or "source-1" in skipped[0].passage.reason

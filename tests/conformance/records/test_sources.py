@@ -12,7 +12,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from helpers.command_line import pantocheck
-from helpers.measured_pairs import PASSAGE, SPEED, STATED, MeasuredPair, write_german
+from helpers.measured_pairs import PASSAGE, SPEED, STATED, MeasuredPair, write_german, write_masts
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.app.notebook.graded_results import assess_run
 from pantocheck.conformance.cases.profile_file import load_profile
@@ -123,7 +123,7 @@ WRONG: dict[str, tuple[MeasuredPair, str, str]] = {
     "the other pantograph": (MeasuredPair(), STATED.replace("3.217", "6.074"), "pulses come 2.86 s after"),
     "one pantograph, 1 s": (MeasuredPair(1), STATED.replace("3.217", "4.217"), "pulses come 1.00 s after"),
     "a minute": (MeasuredPair(1, times=(-5, 90)), STATED.replace("3.217", "63.217"), "pulses come 60.00 s after"),
-    "wrong second": (MeasuredPair(), SECONDS.replace("3.4", "4.4"), "pulses come 1.00 s after the pantographs pass"),
+    "wrong second": (MeasuredPair(), SECONDS.replace("3.4", "4.4"), "pulses come 0.99 s after the pantographs pass"),
     "100 ppm for an hour": (
         MeasuredPair(offset=-3600.0, drift=1e-4),
         'kind = "time", offset_s = -3600.0, uncertainty_s = 0.01',
@@ -183,8 +183,7 @@ def test_two_passages_of_the_same_train_need_a_choice(tmp_path: Path) -> None:
     later = table + np.array([60.0, 0, 0, 0])
     quiet = np.arange(table[-1, 0] + 0.005, later[0, 0] - 0.004, 0.005)
     rows = np.vstack([table, np.column_stack([quiet, np.zeros((quiet.size, 3))]), later])
-    names = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))]
-    write_german(tmp_path / "mast.csv", names, rows)
+    write_masts(tmp_path, rows)
     result = read_results(sidecar)
     assert result["verdict"] == "skip"
     assert "several passages fit, with offset_s = -56.7" in result["skipped"]["0"][UPLIFT]
@@ -192,40 +191,31 @@ def test_two_passages_of_the_same_train_need_a_choice(tmp_path: Path) -> None:
     assert read_results(sidecar)["verdict"] == "pass"
 
 
+def edit_mast(change: Callable[[list[str]], list[str]]) -> Callable[[Path], None]:
+    def edit(folder: Path) -> None:
+        path = folder / "mast.csv"
+        path.write_text("\n".join(change(path.read_text(encoding="cp1252").splitlines())) + "\n", encoding="cp1252")
+
+    return edit
+
+
 # Removal of information.
 def cut_rows(first: float, last: float) -> Callable[[Path], None]:
-    def cut(folder: Path) -> None:
-        head, *rows = (folder / "mast.csv").read_text(encoding="cp1252").splitlines()
-        times = [float(row.partition(";")[0].replace(",", ".")) for row in rows]
-        kept = [row for row, time in zip(rows, times, strict=True) if first <= time + 3.217 <= last]
-        (folder / "mast.csv").write_text("\n".join([head, *kept]) + "\n", encoding="cp1252")
+    def keep(row: str) -> bool:
+        return first <= float(row.partition(";")[0].replace(",", ".")) + 3.217 <= last
 
-    return cut
+    return edit_mast(lambda rows: [rows[0], *filter(keep, rows[1:])])
 
 
-def edit_keys(changes: dict[str, Any]) -> Callable[[Path], None]:
-    return lambda folder: void(edit_toml(folder / "fahrt.toml", changes))
+def edit_keys(changes: dict[str, Any]) -> Callable[[Path], object]:
+    return lambda folder: edit_toml(folder / "fahrt.toml", changes)
 
 
-def void(_: object) -> None:
-    """Nothing."""
-
-
-REMOVALS: dict[str, Callable[[Path], None]] = {
+REMOVALS: dict[str, Callable[[Path], object]] = {
     "start of the masts": cut_rows(4.5, 99),
     "passage of the masts": cut_rows(-9, 7.0),
     "end of the masts": cut_rows(-9, 8.4),
-    "hole in the passage": lambda folder: (
-        (folder / "mast.csv").write_text(
-            "\n".join(
-                row
-                for i, row in enumerate((folder / "mast.csv").read_text(encoding="cp1252").splitlines())
-                if i not in range(1900, 1910)
-            ),
-            encoding="cp1252",
-        )
-        and None
-    ),
+    "hole in the passage": edit_mast(lambda rows: [*rows[:1900], *rows[1910:]]),
     "one mast": edit_keys({"source.0.columns.uplift_2_m": None}),
     "one mast and its support": edit_keys({"source.0.columns.uplift_3_m": None, "support_position_m": [300.0, 360.0]}),
     "source": edit_keys({"source": None}),
@@ -254,12 +244,12 @@ def test_gap_beside_the_passage_hides_no_uplift(tmp_path: Path) -> None:
     """A smooth wave of 60 mm, 40 m before a support, exceeds the space; without its samples, nothing is graded."""
     pair = MeasuredPair(1)
     sidecar = edit_toml(pair.write(tmp_path, STATED), {"line.uplift_space_mm": 55.0})
-    names, table = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))], pair.masts()
+    table = pair.masts()
     distance = SPEED * (table[:, 0] + pair.offset) - 360 + 40
     table[:, 2] += 60.0 * np.exp(-((distance / 10) ** 2))
-    write_german(tmp_path / "mast.csv", names, table)
+    write_masts(tmp_path, table)
     assert read_results(sidecar)["verdict"] == "fail"
-    write_german(tmp_path / "mast.csv", names, table[np.abs(distance) > 15])
+    write_masts(tmp_path, table[np.abs(distance) > 15])
     result = read_results(sidecar)
     assert result["verdict"] == "skip"
     assert "the uplift at 420 m has no rest" in result["skipped"]["0"][UPLIFT]
@@ -270,10 +260,10 @@ def test_uncertain_clock_leaves_an_uplift_near_its_space_undecided(tmp_path: Pat
     pair = MeasuredPair(1)
     sidecar = pair.write(tmp_path, STATED.replace("0.005", "0.1"))
     edit_toml(sidecar, {"line.uplift_space_mm": 53.0})
-    names, table = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))], pair.masts()
+    table = pair.masts()
     near = np.abs(SPEED * (table[:, 0] + pair.offset) - 360 + 62) < 0.4
     table[near, 2] = 55.0
-    write_german(tmp_path / "mast.csv", names, table)
+    write_masts(tmp_path, table)
     result = read_results(sidecar)
     (criterion,) = (row for row in result["criteria"] if row["quantity"] == UPLIFT)
     assert criterion["verdict"] == "undecided"
@@ -285,8 +275,7 @@ def change_mast(sidecar: Path, change: Callable[[np.ndarray], np.ndarray], pair:
     """Change the uplift of the second mast [mm]."""
     table = (pair or MeasuredPair()).masts()
     table[:, 2] = change(table[:, 2])
-    names = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))]
-    write_german(sidecar.parent / "mast.csv", names, table)
+    write_masts(sidecar.parent, table)
 
 
 def join_tables(pair: MeasuredPair) -> np.ndarray:
@@ -305,7 +294,7 @@ def write_joined(folder: Path, table: np.ndarray) -> Path:
     return edit_toml(sidecar, {"source": None, **uplifts})
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=2, deadline=None)
 @given(cut=st.tuples(st.floats(0, 1), st.floats(0, 1)), inside=st.booleans())
 @example(cut=(0.0, 0.0), inside=True)
 @example(cut=(0.0, 0.3), inside=True)  # the rest of the first support, 150 to 200 m, is in the first 26 %
@@ -370,11 +359,7 @@ def test_inverted_mast_confirms_no_clock(tmp_path: Path) -> None:
     sidecar = edit_toml(pair.write(tmp_path, PASSAGE), {"evaluated_m": [270.0, 330.0]})
     table = pair.masts()
     rebound = 13 * np.exp(-np.abs(SPEED * (table[:, 0] + pair.offset) - 370) / 3)
-    write_german(
-        tmp_path / "mast.csv",
-        ["Uhrzeit [s]", "Anhub Mast 1 [mm]"],
-        np.column_stack([table[:, 0], rebound - table[:, 1]]),
-    )
+    write_masts(tmp_path, np.column_stack([table[:, 0], rebound - table[:, 1]]))
     result = read_results(sidecar)
     assert [source["state"] for source in result["sources"]] == ["unconfirmed"]
     assert "the uplift at 300 m falls by" in result["skipped"]["0"][UPLIFT]
@@ -390,7 +375,7 @@ def test_inverted_mast_confirms_no_clock(tmp_path: Path) -> None:
 )
 def test_rounded_uplift_is_neither_overloaded_nor_off_zero(step: float, rate: float, tmp_path: Path) -> None:
     """A sensor in whole steps holds its largest value at a smooth maximum, and 1 mm are within the zero."""
-    pair = MeasuredPair(noise=0.0, rate=rate, times=(-1.0, 11.0))
+    pair = MeasuredPair(noise=0.0, rate=rate, supports=(300.0, 360.0), times=(-1.0, 9.2))
     sidecar = pair.write(tmp_path, STATED)
     for smooth in (False, True):
         place = SPEED * np.arange(*pair.times, 1 / rate) - 360
@@ -409,7 +394,7 @@ def test_mast_file_without_a_rest_does_not_pass(tmp_path: Path) -> None:
                         "source.0.columns.uplift_3_m": None, "support_position_m": [300.0]})  # fmt: skip
     table = pair.masts()
     table[:, 1] -= 3.0
-    write_german(tmp_path / "mast.csv", ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))], table)
+    write_masts(tmp_path, table)
     result = read_results(sidecar)
     assert result["verdict"] == "skip"
     reasons = [row["reason"] for row in result["criteria"] if row["quantity"] == UPLIFT]
@@ -494,7 +479,7 @@ def test_position_of_another_file_places_the_force(join: str, tmp_path: Path) ->
     expected = assess(reference)
     assessed = assess(write_position(tmp_path, join, lambda time: time + 1732382000.0))
     for name, value in expected.values.values[1].items():
-        # The section may begin one sample of 1 ms earlier or later.
+        # The section may begin one sample of 2 ms earlier or later.
         assert assessed.values.values[1][name] == pytest.approx(value, rel=2e-3, abs=1e-3), name
     component = assessed.uncertainty.components["alignment"].half_widths
     assert 0 < component[1]["mean_force_N"] < 5
@@ -523,7 +508,7 @@ def test_rear_force_of_a_file_with_its_own_clock_is_that_of_one_file(tmp_path: P
     both = assess(split_forces(tmp_path / "two")).values.values
     assert both[1] == one[1]
     for name in ("mean_force_N", "std_force_N", "max_force_N", "min_force_N", "rms_20_50_N"):
-        # A component of 38 Hz and 12 N is damped by less than 0.1 % between samples of 1 ms.
+        # A component of 38 Hz and 12 N is damped by less than 0.4 % between samples of 2 ms.
         assert both[2][name] == pytest.approx(one[2][name], abs=0.02), name
     (tmp_path / "late").mkdir()
     late = assess(split_forces(tmp_path / "late", late=0.5)).values.values
@@ -534,12 +519,12 @@ def test_rear_force_keeps_its_gap_and_needs_the_rate_of_the_first(tmp_path: Path
     """A gap of 20 ms at 8 s, where the rear pantograph is at 360 m, inside the analysis section."""
     sidecar = split_forces(tmp_path)
     rows = (tmp_path / "rear.csv").read_text(encoding="cp1252").splitlines()
-    (tmp_path / "rear.csv").write_text("\n".join([*rows[:8000], *rows[8020:]]) + "\n", encoding="cp1252")
+    (tmp_path / "rear.csv").write_text("\n".join([*rows[:4000], *rows[4010:]]) + "\n", encoding="cp1252")
     values = assess(sidecar).values.values
     assert isinstance(values[1]["mean_force_N"], float)
     assert not isinstance(values[2].get("mean_force_N"), float)
     (tmp_path / "slow").mkdir()
-    with pytest.raises(InputError, match="has a force with 500 samples per second, and the first file 1000"):
+    with pytest.raises(InputError, match="has a force with 250 samples per second, and the first file 500"):
         assess(split_forces(tmp_path / "slow", step=2))
 
 
@@ -552,15 +537,7 @@ def test_wrong_clock_of_the_position_is_named_by_the_masts(tmp_path: Path) -> No
 
 
 # Damaged inputs: each message names the file, the key or the sample, and the found and the expected.
-def edit_mast(change: Callable[[list[str]], list[str]]) -> Callable[[Path], None]:
-    def edit(folder: Path) -> None:
-        path = folder / "mast.csv"
-        path.write_text("\n".join(change(path.read_text(encoding="cp1252").splitlines())) + "\n", encoding="cp1252")
-
-    return edit
-
-
-DAMAGES: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
+DAMAGES: dict[str, tuple[Callable[[Path], object], tuple[str, ...]]] = {
     "missing file": (lambda folder: (folder / "mast.csv").unlink(), ("record 'mast.csv'", "No such file")),
     "path": (edit_keys({"source.0.file": "../mast.csv"}), ("source[1].file", "found the path '../mast.csv'")),
     "digest": (edit_keys({"source.0.sha256": "0" * 64}), ("record 'mast.csv'", "sha256")),

@@ -119,11 +119,7 @@ def test_page_and_warning_name_the_modes_that_are_left_out(results: DampingResul
     assert "is subtracted from the measured damping ratios. It is more than 1 % of the damping ratio of " in warning
 
 
-def test_too_few_separate_modes_are_refused(modes: tuple[Mode, ...], line: Catenary) -> None:
-    close = [
-        mode
-        for mode, result in zip(modes, build_damping_results(modes, line, 1.0, "m").pairs, strict=True)
-        if result.overlapping
-    ]
+def test_too_few_separate_modes_are_refused(modes: tuple[Mode, ...], results: DampingResults, line: Catenary) -> None:
+    close = [mode for mode, pair in zip(modes, results.pairs, strict=True) if pair.overlapping]
     with pytest.raises(InputError, match="only 0 modes for a fit of 4 coefficients"):
         build_damping_results(close, line, 1.0, "modes.json")

@@ -15,6 +15,6 @@ def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if shutil.which("g++") is None:
         pytest.skip("g++ is not installed")
     program = tmp_path_factory.mktemp("cpp") / "adapter"
-    options = ["-O2", "-std=c++17", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
+    options = ["-O1", "-std=c++17", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
     subprocess.run(["g++", *options, "-o", str(program), str(SOURCE)], check=True)
     return program

@@ -18,6 +18,7 @@ from pantocheck.conformance.app.commands import system_self_test_command
 from pantocheck.conformance.app.self_test.adapter_check import build_short_case, build_twin_case
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.line.catenary_model import discretise_line
+from pantocheck.conformance.runs import rig_control
 from pantocheck.conformance.runs.record_folder import read_case_record
 from pantocheck.conformance.runs.rig_control import LowPass, RigControl, RigLimits, RigRow
 from pantocheck.conformance.runs.rig_link import (
@@ -276,6 +277,7 @@ def test_command_runs_a_rig_over_udp(
     """In real time, with a watchdog of 5 s: the machine of a test may be busy. The record is one of the case."""
     case = change_case(build_short_case(), mesh=(2.0, STEP_S))
     monkeypatch.setattr(system_self_test_command, "choose_train_case", lambda *_: case)
+    monkeypatch.setattr(rig_control, "HOLD_S", 1.2)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]

@@ -194,8 +194,7 @@ def test_both_cores_compute_the_same(
 @pytest.mark.parametrize(
     "options",
     [
-        ("-DWIDEST=2",),
-        pytest.param(("-O1",), marks=pytest.mark.thorough),
+        ("-DWIDEST=2", "-O1"),
         pytest.param(("-march=native", "-funroll-loops"), marks=pytest.mark.thorough),
     ],
 )

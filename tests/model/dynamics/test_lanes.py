@@ -73,7 +73,8 @@ GROUPS = {name: (line, passages) for name, line, passages in list_groups()}
 @pytest.fixture(scope="module", params=[8, 4, 2])
 def core(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Core:
     """Core with vectors of some numbers at most; a processor without them takes shorter ones."""
-    loaded = load_core(compile_core(tmp_path_factory.mktemp("core"), f"-DWIDEST={request.param}"))
+    # Less optimisation halves the time of the compiler; `test_cores.py` shows that no bit depends on it.
+    loaded = load_core(compile_core(tmp_path_factory.mktemp("core"), f"-DWIDEST={request.param}", "-O1"))
     assert isinstance(loaded, Core), loaded
     return loaded
 

@@ -428,7 +428,7 @@ def test_fixtures_check_an_fmu_and_run_it(pytester: pytest.Pytester, write_fmu: 
         FOLDER = "{tmp_path}"
 
         def test_fmu(pantocheck_pantograph, pantocheck_run):
-            assert pantocheck_pantograph(f"{{FOLDER}}/fmu/model.fmu", step_s=0.004).passed
+            assert pantocheck_pantograph(f"{{FOLDER}}/fmu/model.fmu", step_s=0.01).passed
             fmu, limits = [f"{{FOLDER}}/fmu/model.fmu"], f"{{FOLDER}}/limits.toml"
             graded = pantocheck_run(f"{{FOLDER}}/own.toml", pantographs=fmu, limits=limits)
             assert graded.result.fmus[0].file == "model.fmu"
@@ -436,7 +436,7 @@ def test_fixtures_check_an_fmu_and_run_it(pytester: pytest.Pytester, write_fmu: 
             graded.check("std_force_N")
 
         def test_late(pantocheck_pantograph):
-            pantocheck_pantograph(f"{{FOLDER}}/late/model.fmu")
+            pantocheck_pantograph(f"{{FOLDER}}/late/model.fmu", step_s=0.01)
         """
     )
     done = session(pytester)

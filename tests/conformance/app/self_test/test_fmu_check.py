@@ -15,12 +15,12 @@ from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.response_record import read_response
 from pantocheck.conformance.runs import fmu_process
 
-STEP = 0.004
+STEP = 0.01
 """Time step of the coupling [s]; half of it is checked, too."""
 
 
-def findings(file: object) -> dict[str, tuple[str, str]]:
-    return {found.subject: (found.state, found.text) for found in check_fmu(file, 120.0, STEP).findings}
+def findings(file: object, step: float = STEP) -> dict[str, tuple[str, str]]:
+    return {found.subject: (found.state, found.text) for found in check_fmu(file, 120.0, step).findings}
 
 
 def test_a_chain_as_fmu_passes(write_fmu: WriteFmu, tmp_path: Path) -> None:
@@ -60,7 +60,8 @@ def test_a_broken_fmu_is_refused_with_its_reason(
     write_fmu: WriteFmu, monkeypatch: pytest.MonkeyPatch, fault: str, subject: str, reason: str
 ) -> None:
     monkeypatch.setattr(fmu_process, "STEP_LIMIT", 1.0)
-    state, text = findings(write_fmu(fault=fault))[subject]
+    step = 0.004 if fault == "energy" else STEP  # in longer steps the passage ends before the energy is measured
+    state, text = findings(write_fmu(fault=fault), step)[subject]
     assert state == "wrong"
     assert reason in text
 
