@@ -182,7 +182,7 @@ def test_missing_value_leaves_its_band_open(tmp_path: Path) -> None:
     assert compared.responses[0].missing_rows == (115,)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.sets(st.integers(0, rig.FREQUENCY.size - 1), min_size=1), st.booleans())
 def test_no_removal_of_values_or_metadata_makes_a_failing_response_pass(
     tmp_path: Path, removed: set[int], stated: bool

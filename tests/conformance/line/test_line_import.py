@@ -237,7 +237,7 @@ def texts(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     return [table.read_text(encoding="utf-8") for table in tables]
 
 
-@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(CHANGES)
 def test_any_cells_give_a_line_or_an_error_with_a_place(
     tmp_path: Path, texts: list[str], changes: list[tuple[int, int, int, str]]

@@ -24,7 +24,7 @@ from pantocheck.conformance.records.record_reading import open_record, read_samp
 from pantocheck.conformance.runs.record_folder import open_record_folder
 from verification.attacks import fuzz, fuzz_files, fuzz_uses
 
-ROUNDS = 12
+ROUNDS = 6
 
 NAMES = (
     *("csv table", "csv sidecar", "csv table, digest known", "h5 table", "h5 sidecar", "h5 table, digest known"),
@@ -119,7 +119,7 @@ INSIDE = {
 }
 
 
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.fixed_dictionaries(VALUES), st.floats(40, 60))
 @example(INSIDE, 50.0)
 def test_summary_passes_if_every_value_is_inside(tmp_path: Path, values: dict[str, float], uplift: float) -> None:
@@ -160,7 +160,7 @@ KEYS = st.sampled_from(
 )  # fmt: skip
 
 
-@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.sampled_from(["pantocheck.record/1", "pantocheck.summary/1"]), st.dictionaries(KEYS, ANYTHING, max_size=4))
 def test_any_toml_is_a_record_or_refused_with_its_key(tmp_path: Path, schema: str, keys: dict[str, Any]) -> None:
     base = SOUND if schema == "pantocheck.record/1" else {}
@@ -174,7 +174,7 @@ def test_any_toml_is_a_record_or_refused_with_its_key(tmp_path: Path, schema: st
 CELLS = st.one_of(st.floats().map(repr), st.integers().map(str), st.text(max_size=6), st.just(""))
 
 
-@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.lists(CELLS, min_size=3, max_size=3), max_size=6), st.sampled_from(["\n", "\r\n", "\r"]))
 def test_any_text_is_a_table_or_refused(tmp_path: Path, rows: list[list[str]], end: str) -> None:
     sidecar = {"schema": "pantocheck.record/1", **SOUND}
