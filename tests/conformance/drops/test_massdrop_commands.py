@@ -43,7 +43,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     amplitudes = np.array([deflection_at(line, shapes, line.mesh.row_of[wire, "z"], x) for wire, _, x in SENSORS])
     omega = 2 * np.pi * shapes.frequency
     poles = omega * (-ratio + 1j)
-    t = np.arange(int(140 * RATE)) / RATE - RELEASE
+    t = np.arange(int(90 * RATE)) / RATE - RELEASE
     random = np.random.default_rng(0)
     signal = np.zeros((t.size, len(SENSORS)))
     for j, pole in enumerate(poles):

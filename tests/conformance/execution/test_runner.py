@@ -265,8 +265,11 @@ def test_parallel_run_gives_the_same_results_and_skips_circles(
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="signals as on Linux")
-def test_interrupted_parallel_run_ends_every_worker(cases: list[Case], tmp_path: Path) -> None:
-    """A worker ends its case after a signal; one that ignores the signal is killed after the grace of 2 s."""
+def test_interrupted_parallel_run_ends_every_worker(
+    cases: list[Case], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A worker ends its case after a signal; one that ignores the signal is killed after the grace."""
+    monkeypatch.setattr("pantocheck.conformance.core.processes.GRACE", 1.0)
     # Both waiting cases would run for a minute. A start of three interpreters and the end of the pool take seconds.
     waiting = [replace(cases[1], file=cases[1].file.model_copy(update={"id": f"own/{name}"})) for name in "ab"]
     system = Waiting(tmp_path, cases[0].id, len(waiting), deaf="own/b")
