@@ -181,7 +181,9 @@ def _moves(w: Array, first: int, last: int) -> bool:
     return False
 
 
-def find_unknown(limits: WindowArrays, passage: Passage, stations: Array, time: Array) -> NDArray[np.bool_]:
+def find_unknown(
+    limits: WindowArrays, passage: Passage, stations: Array, time: Array, chosen: Indices | slice = slice(None)
+) -> NDArray[np.bool_]:
     """Find the times at which the motion of each station is unknown: a wave from a cut can have reached it.
 
     Args:
@@ -189,11 +191,13 @@ def find_unknown(limits: WindowArrays, passage: Passage, stations: Array, time: 
         passage: Train and its speed.
         stations: Positions of the stations, (U,) [m].
         time: Times at the ends of steps, rising, (T,) [s].
+        chosen: Steps of the result, (C,); default: all.
 
     Returns:
-        True where the motion is unknown, (U, T).
+        True where the motion is unknown, (U, C).
     """
-    unknown = np.zeros((stations.size, time.size), dtype=np.bool_)
+    instants = time[chosen]
+    unknown = np.zeros((stations.size, instants.size), dtype=np.bool_)
     if limits.whole_line:
         return unknown
     position = stations[:, None]
@@ -207,7 +211,8 @@ def find_unknown(limits: WindowArrays, passage: Passage, stations: Array, time: 
         if cut.size:
             # No edge moves faster than the waves, so that no wave of a later cut overtakes that of the first.
             first = cut[0]
-            travelled = MIN_HALF_WIDTH + limits.wave_speed * (time[first:] - time[first])
+            later = instants >= time[first]
+            travelled = MIN_HALF_WIDTH + limits.wave_speed * (instants[later] - time[first])
             wave = edge[first] - direction * travelled
-            unknown[:, first:] |= direction * (position - wave) >= 0
+            unknown[:, later] |= direction * (position - wave) >= 0
     return unknown

@@ -104,9 +104,9 @@ def _hide_unknown(
     """Recorded frames, with NaN where the motion is unknown."""
     request, frames = recorder.request, recorder.build_frames()
     # The first cut may lie between two frames, so that all steps are searched.
-    unknown = find_unknown(window, passage, line.mesh.position[list(request.stations)], time)
-    hidden = unknown[:, np.array(request.steps) - 1].T[:, None]
-    return replace(frames, displacement=np.where(hidden, np.nan, frames.displacement))
+    chosen = np.array(request.steps) - 1
+    unknown = find_unknown(window, passage, line.mesh.position[list(request.stations)], time, chosen)
+    return replace(frames, displacement=np.where(unknown.T[:, None], np.nan, frames.displacement))
 
 
 def check_passage(line: DiscretisedLine, passage: Passage) -> None:
