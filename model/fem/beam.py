@@ -38,11 +38,8 @@ def mass(h: float | Array, mass_per_length: float | Array) -> Array:
 def _element_matrices(factor: float | Array, shares: Array, h: float | Array) -> Array:
     """Matrices `factor` times `shares`, in which every slope counts times the length h of the element."""
     h = np.asarray(h, dtype=np.float64)
-    powers = (np.ones_like(h), h, h * h)
-    matrices = np.empty((*np.broadcast_shapes(np.shape(factor), h.shape), 4, 4))
-    for i, j in np.ndindex(4, 4):
-        matrices[..., i, j] = factor * (shares[i, j] * powers[i % 2 + j % 2])
-    return matrices
+    powers = np.stack((np.ones_like(h), h, h * h), axis=-1)[..., np.add.outer([0, 1, 0, 1], [0, 1, 0, 1])]
+    return np.asarray(np.asarray(factor)[..., None, None] * (shares * powers))
 
 
 def springs(stiffness: Array) -> Array:

@@ -157,12 +157,11 @@ def _point_flexibility(h: Array, tension: Array, bending_stiffness: Array) -> Ar
     of_middle = (h[:, middle], tension[:, middle], bending_stiffness[:, middle])
     cubic = _end_flexibility(beam.stiffness(h, tension, bending_stiffness))
     exact = _end_flexibility(exact_stiffness(h, tension, bending_stiffness))
-    values = np.empty((len(h), _NODES.size))
-    for k, s in enumerate(_NODES):
-        n = np.stack([beam.shape(float(s), float(length)) for length in of_middle[0]])
-        shape, clamped = (n, 0.0) if s in (0.0, 1.0) else _exact_shape(s, *of_middle)
-        values[:, k] = clamped + _quadratic_form(exact, shape) - _quadratic_form(cubic, n)
-    return values
+    shape = np.moveaxis(beam.shape(*np.broadcast_arrays(_NODES[:, None], of_middle[0])), 0, -1).copy()
+    exact_shape, clamped = shape.copy(), np.zeros(shape.shape[:2])  # both have the same shape at the ends
+    exact_shape[1:-1], clamped[1:-1] = _exact_shape(_NODES[1:-1, None], *of_middle)
+    nodes = zip(clamped, exact_shape, shape, strict=True)
+    return np.array([a + _quadratic_form(exact, b) - _quadratic_form(cubic, c) for a, b, c in nodes]).T
 
 
 def _quadratic_form(matrix: Array, vector: Array) -> Array:
@@ -182,9 +181,9 @@ def _end_flexibility(elements: Array) -> Array:
     return np.linalg.solve(inner, np.broadcast_to(load, (patches, *load.shape)))[:, ends]
 
 
-def _exact_shape(s: float, h: Array, tension: Array, bending_stiffness: Array) -> tuple[Array, Array]:
-    """Exact static shape functions of elements at s, (U, 4), and the flexibility there with clamped ends, (U,)."""
+def _exact_shape(s: Array, h: Array, tension: Array, bending_stiffness: Array) -> tuple[Array, Array]:
+    """Exact static shape functions of elements at s, (n, 1), and the flexibility there with clamped ends, (n, U)."""
     left, right = (exact_stiffness(share * h, tension, bending_stiffness) for share in (s, 1 - s))
-    inverse: Array = np.asarray(np.linalg.inv(left[:, 2:, 2:] + right[:, :2, :2]), dtype=np.float64)
-    coupling = np.concatenate([left[:, 2:, :2], right[:, :2, 2:]], axis=2)
-    return -(inverse @ coupling)[:, 0], inverse[:, 0, 0]
+    inverse: Array = np.asarray(np.linalg.inv(left[..., 2:, 2:] + right[..., :2, :2]), dtype=np.float64)
+    coupling = np.concatenate([left[..., 2:, :2], right[..., :2, 2:]], axis=-1)
+    return -(inverse @ coupling)[..., 0, :], inverse[..., 0, 0]
