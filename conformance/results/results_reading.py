@@ -6,7 +6,7 @@ from pydantic import TypeAdapter
 
 from pantocheck.conformance.core.files import read_bytes
 from pantocheck.conformance.core.json_file import parse_json, validate_json
-from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 MAX_RESULTS_BYTES = 64 * 2**20
 """Largest results.json that is read [bytes]; the results of two cases have a few hundred thousand."""
@@ -32,6 +32,7 @@ def parse_results(content: bytes, where: str) -> Results:
     Raises:
         InputError: Too large, not JSON, or not in the format of the suite.
     """
+    CaseResult.model_rebuild()  # else it would be built inside the whole, and once more when a case is graded again
     return validate_json(
         parse_json(content, where, MAX_RESULTS_BYTES),
         TypeAdapter(Results),
