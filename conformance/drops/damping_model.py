@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.line.elements.damping import DAMPING_KEYS
 from pantocheck.conformance.results.damping_format import Coefficient, Matching, Observability, Thresholds
 from pantocheck.model import Catenary, Kind, Rayleigh
 from pantocheck.model.description.catenary import ModalBand
@@ -46,14 +47,7 @@ MATRICES = {
 }
 """Matrices by name, in the order of the terms; plausible values are the largest in Vo Van, Balmes, Lorang 2015."""
 
-TABLE_OF_KIND = {
-    Kind.CONTACT_WIRE: "contact_wire",
-    Kind.MESSENGER_WIRE: "messenger_wire",
-    Kind.STITCH_WIRE: "stitch_wire",
-    Kind.DROPPER: "droppers",
-    Kind.STEADY_ARM: "steady_arms",
-    Kind.MESSENGER_SUPPORT: "messenger_supports",
-}
+TABLE_OF_KIND = DAMPING_KEYS | {Kind.MESSENGER_SUPPORT: "messenger_supports"}
 """Table of a kind of component in the damping of a line file."""
 
 

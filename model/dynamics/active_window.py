@@ -196,8 +196,7 @@ def find_unknown(
     Returns:
         True where the motion is unknown, (U, C).
     """
-    instants = time[chosen]
-    unknown = np.zeros((stations.size, instants.size), dtype=np.bool_)
+    unknown = np.zeros((stations.size, time[chosen].size), dtype=np.bool_)
     if limits.whole_line:
         return unknown
     position = stations[:, None]
@@ -211,8 +210,8 @@ def find_unknown(
         if cut.size:
             # No edge moves faster than the waves, so that no wave of a later cut overtakes that of the first.
             first = cut[0]
-            later = instants >= time[first]
-            travelled = MIN_HALF_WIDTH + limits.wave_speed * (instants[later] - time[first])
+            later = time[chosen] >= time[first]
+            travelled = MIN_HALF_WIDTH + limits.wave_speed * (time[chosen][later] - time[first])
             wave = edge[first] - direction * travelled
             unknown[:, later] |= direction * (position - wave) >= 0
     return unknown

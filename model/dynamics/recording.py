@@ -38,6 +38,11 @@ class Recording(NamedTuple):
     slack: Indices
     """Number of slack droppers in the active window, (T,)."""
 
+    def cut(self, steps: slice) -> "Recording":
+        """Part of the recording."""
+        contact, height, motion = self.contact[steps], self.height[steps], self.motion[steps]
+        return Recording(self.row, self.station, contact, height, motion, self.slack[steps])
+
 
 @dataclass
 class FrameRecorder:
@@ -89,13 +94,7 @@ def simulate_steps(
     stops = {*range(BLOCK, load.size, BLOCK), load.size, *(frames.request.steps if frames else ())}
     for first, end in pairwise((0, *sorted(stops))):
         block = slice(first, end)
-        part = recording._replace(
-            contact=recording.contact[block],
-            height=recording.height[block],
-            motion=recording.motion[block],
-            slack=recording.slack[block],
-        )
-        steps = advance(load[block], part)
+        steps = advance(load[block], recording.cut(block))
         if steps < end - first:
             refuse_divergence(first + steps, kernel.time_step)
         if frames:
@@ -132,14 +131,7 @@ def bind_single_steps(
 
     def advance_once(step: int) -> None:
         """Advance one time step, and record it as the step of this number."""
-        here = slice(step, step + 1)
-        part = recording._replace(
-            contact=recording.contact[here],
-            height=recording.height[here],
-            motion=recording.motion[here],
-            slack=recording.slack[here],
-        )
-        if advance(load, part) == 0:
+        if advance(load, recording.cut(slice(step, step + 1))) == 0:
             refuse_divergence(step, kernel.time_step)
 
     return advance_once

@@ -81,6 +81,19 @@ def overlapping_line(
     return join_sections([place(number) for number in range(sections)])
 
 
+def twin_line() -> Catenary:
+    """Line with parallel contact wires of different tension."""
+    catenary = simple_line(spans=2, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
+    contact, messenger = catenary.wires
+    second = replace(contact, name="second", tension=12e3)
+    return replace(
+        catenary,
+        wires=(contact, second, messenger),
+        droppers=catenary.droppers + tuple(replace(d, lower="second", stiffness=5e4) for d in catenary.droppers),
+        steady_arms=catenary.steady_arms + tuple(replace(arm, wire="second") for arm in catenary.steady_arms),
+    )
+
+
 def fix_along_track(catenary: Catenary, axial_stiffness: float = 13.8e6) -> Catenary:
     """Fix the messenger wires at all supports along the track; a solid bar of 120 mm2 of bronze has this EA [N]."""
     supports = tuple(replace(support, along_track="fixed") for support in catenary.messenger_supports)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import periodogram
 
-from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, simple_line
+from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, simple_line, twin_line
 from helpers.step_differences import THREE_MASSES, largest_differences
 from pantocheck.model import Irregularity, Passage, SpectralDensity, discretise, realise_irregularity, simulate_passage
 from pantocheck.model.description.catenary import Catenary
@@ -88,17 +88,8 @@ def test_force_on_a_rigid_wavy_wire_is_the_closed_form_response(pantograph: Pant
 
 def test_step_equals_the_plain_implementation_on_irregular_wires() -> None:
     """Two contact wires with different irregularities under two pantographs; tolerance as without them."""
-    catenary = simple_line(spans=2, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
-    contact, messenger = catenary.wires
-    second = replace(contact, name="second", tension=12e3)
-    catenary = replace(
-        catenary,
-        wires=(contact, second, messenger),
-        droppers=catenary.droppers + tuple(replace(d, lower="second", stiffness=5e4) for d in catenary.droppers),
-        steady_arms=catenary.steady_arms + tuple(replace(arm, wire="second") for arm in catenary.steady_arms),
-    )
     bump = Irregularity((26.0, 30.0, 31.5, 37.0), (0.0, 0.004, -0.003, 0.002))
-    catenary = with_irregularity(catenary, realise_irregularity(SPECTRUM, 80.0, seed=3), bump)
+    catenary = with_irregularity(twin_line(), realise_irregularity(SPECTRUM, 80.0, seed=3), bump)
     passage = Passage((PANTOGRAPH_2002, THREE_MASSES), (24.0, 12.0), 80.0, 0.4, 2e-3)
     difference, _, _, _ = largest_differences(discretise(catenary, 5.0), passage, 200, drop=1.0)
     assert max(difference.values()) < 1e-9, difference

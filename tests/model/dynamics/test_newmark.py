@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numba.core.runtime import rtsys
 from numba.core.runtime._nrt_python import memsys_enable_stats
 
-from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, fix_along_track, overlapping_line, simple_line
+from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, fix_along_track, overlapping_line, simple_line, twin_line
 from helpers.step_differences import THREE_MASSES, largest_differences
 from pantocheck.model import Catenary, Kind, Passage, Rayleigh, build_chain
 from pantocheck.model.description.pantograph import Pantograph
@@ -63,18 +63,22 @@ def test_step_equals_the_plain_implementation_remove_connectors() -> None:
     assert max(difference.values()) < 1e-9, difference
 
 
-def test_step_equals_the_plain_implementation_with_a_lateral_field() -> None:
-    """A zigzag of 0.2 m on hinged arms: inclined droppers and arms couple the fields; rigid bars: 1e-8."""
+def zigzag_line(share: float) -> Catenary:
+    """Line with a zigzag of 0.2 m on hinged arms; the messenger wire has this share of the stagger."""
     catenary = simple_line(spans=3, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
     contact, messenger = catenary.wires
     zigzag = ((0.0, 0.2), (40.0, -0.2), (80.0, 0.2), (120.0, -0.2))
-    catenary = replace(
+    return replace(
         catenary,
-        wires=(replace(contact, stagger=zigzag), replace(messenger, stagger=tuple((x, 0.0) for x, _ in zigzag))),
+        wires=(replace(contact, stagger=zigzag), replace(messenger, stagger=tuple((x, share * y) for x, y in zigzag))),
         steady_arms=tuple(replace(arm, vertical_stiffness=None, length=1.2, mass=0.7) for arm in catenary.steady_arms),
     )
+
+
+def test_step_equals_the_plain_implementation_with_a_lateral_field() -> None:
+    """A zigzag of 0.2 m on hinged arms: inclined droppers and arms couple the fields; rigid bars: 1e-8."""
     passage = Passage((PANTOGRAPH_2002,), (24.0,), 80.0, 0.6, 2e-3)
-    line = discretise(catenary, 5.0)
+    line = discretise(zigzag_line(0.0), 5.0)
     assert np.abs(line.state.arm_force[:, 0]).min() > 100.0
     difference, tension, _, _ = largest_differences(line, passage, 300, drop=1.0)
     assert (tension[:, line.connectors.unilateral] == 0.0).any()
@@ -87,16 +91,8 @@ def test_step_equals_the_plain_implementation_with_held_stretches() -> None:
     The sag of this messenger, 0.4 m with droppers, and ten times the axial stiffness of a bar make the term as large as
     the stiffness of the wires; rigid arms as above: 1e-8.
     """
-    catenary = simple_line(spans=3, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
-    contact, messenger = catenary.wires
-    zigzag = ((0.0, 0.2), (40.0, -0.2), (80.0, 0.2), (120.0, -0.2))
-    catenary = replace(
-        catenary,
-        wires=(replace(contact, stagger=zigzag), replace(messenger, stagger=tuple((x, -y) for x, y in zigzag))),
-        steady_arms=tuple(replace(arm, vertical_stiffness=None, length=1.2, mass=0.7) for arm in catenary.steady_arms),
-    )
     passage = Passage((PANTOGRAPH_2002,), (24.0,), 80.0, 0.6, 2e-3)
-    free, fixed = discretise(catenary, 5.0), discretise(fix_along_track(catenary, 13.8e7), 5.0)
+    free, fixed = (discretise(line, 5.0) for line in (zigzag_line(-1.0), fix_along_track(zigzag_line(-1.0), 13.8e7)))
     difference, tension, contact_force, _ = largest_differences(fixed, passage, 300, drop=1.0)
     assert (tension[:, fixed.connectors.unilateral] == 0.0).any()
     assert max(difference.values()) < 1e-8, difference
@@ -104,19 +100,10 @@ def test_step_equals_the_plain_implementation_with_held_stretches() -> None:
     assert np.abs(contact_force - without).max() > 5.0
 
 
-def test_step_equals_the_plain_implementation_under_two_contact_wires() -> None:
+def test_step_equals_the_plain_implementation_under_twin_line() -> None:
     """Parallel contact wires of different tension: each head presses on both and may lose either."""
-    catenary = simple_line(spans=2, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
-    contact, messenger = catenary.wires
-    second = replace(contact, name="second", tension=12e3)
-    catenary = replace(
-        catenary,
-        wires=(contact, second, messenger),
-        droppers=catenary.droppers + tuple(replace(d, lower="second", stiffness=5e4) for d in catenary.droppers),
-        steady_arms=catenary.steady_arms + tuple(replace(arm, wire="second") for arm in catenary.steady_arms),
-    )
     passage = Passage((PANTOGRAPH_2002, THREE_MASSES), (24.0, 12.0), 80.0, 0.4, 2e-3)
-    difference, _, contact_force, _ = largest_differences(discretise(catenary, 5.0), passage, 200, drop=1.0)
+    difference, _, contact_force, _ = largest_differences(discretise(twin_line(), 5.0), passage, 200, drop=1.0)
     assert contact_force.shape[1] == 4
     lost = contact_force == 0.0
     assert (lost[:, 0::2] != lost[:, 1::2]).any()
