@@ -1,5 +1,5 @@
 """`python -m pantocheck`: the command of the suite."""
 
-from pantocheck.conformance.app.main import main
+from pantocheck.conformance.app.main import start
 
-main()
+start()

@@ -92,8 +92,7 @@ def checkout(tmp_path: Path) -> Path:
     shutil.copytree(library_folder() / "en50318-2002" / "known-passing-code", tmp_path / "my records")
     program = tmp_path / "temp" / "pantocheck-environment" / "bin" / "pantocheck"
     program.parent.mkdir(parents=True)
-    code = "from pantocheck.conformance.app.main import main; main()"
-    program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -c "{code}" "$@"\n')
+    program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m pantocheck "$@"\n')
     program.chmod(0o755)
     return tmp_path
 

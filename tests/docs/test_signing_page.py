@@ -30,7 +30,7 @@ def test_commands_of_the_test_authority(accepted_wave: Results, tmp_path: Path) 
     for name in ("certificate.pdf", "results.json"):
         (tmp_path / "report" / name).write_bytes(render_document(accepted_wave.to_dict(), name))
     commands = PAGE.read_text(encoding="utf-8").split("## A test authority")[1].split("```sh\n")[1].split("```")[0]
-    program = f"{sys.executable} -c 'from pantocheck.conformance.app.main import main; main()'"
+    program = f"{sys.executable} -c 'from pantocheck.conformance.app.main import start; start()'"
     script = f'set -e\npantocheck() {{ {program} "$@"; }}\n{commands}'
     folder = str(Path(sys.executable).parent)
     done = subprocess.run(

@@ -118,8 +118,7 @@ CAMPAIGN = ("en50318-2002/250", "--vary", "speed_km_h=200:299:1")
 @pytest.mark.skipif(sys.platform != "linux", reason="the children of a process are listed in /proc")
 def test_workers_end_inside_a_kernel(tmp_path: Path) -> None:
     """Each run of the case needs several passages, which compute in compiled code."""
-    code = "from pantocheck.conformance.app.main import main; main()"
-    command = [sys.executable, "-c", code, "campaign", *CAMPAIGN, "--workers", "2", "--out", str(tmp_path)]
+    command = [sys.executable, "-m", "pantocheck", "campaign", *CAMPAIGN, "--workers", "2", "--out", str(tmp_path)]
     with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as driver:
         while len(list_children(driver.pid)) < 3 or not count_stored(tmp_path):
             assert driver.poll() is None

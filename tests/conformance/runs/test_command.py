@@ -336,7 +336,7 @@ def test_signal_to_the_main_process_keeps_results_and_ends_programs(
     # A parent such as nohup may ignore the signal, and its children inherit that.
     handler = "signal.default_int_handler" if number == signal.SIGINT else "signal.SIG_DFL"
     code = f"import signal; signal.signal({int(number)}, {handler})"
-    command = [sys.executable, "-c", f"{code}; from pantocheck.conformance.app.main import main; main()", "run"]
+    command = [sys.executable, "-c", f"{code}; from pantocheck.conformance.app.main import start; start()", "run"]
     options = ["en50318-2002/*", "--system", system, "--out", str(out), "--formats", "json", "--jobs", str(jobs)]
     errors = tmp_path / "errors"
     with errors.open("wb") as file, subprocess.Popen([*command, *options, "--verbose"], stderr=file) as process:

@@ -363,6 +363,18 @@ def test_linear_algebra_has_one_thread_and_programs_of_the_user_keep_their_envir
     assert run({"OMP_NUM_THREADS": "1"}) == "{1} ['OMP_NUM_THREADS']"
 
 
+def test_process_ends_after_the_functions_of_other_packages() -> None:
+    """They may still print; only the objects are not released one by one."""
+    code = (
+        "import atexit, os, sys; from pantocheck.conformance.app import main\n"
+        "class Released:\n    def __del__(self, write=os.write): write(1, b'released')\n"
+        "sys.kept, sys.argv, run = Released(), ['pantocheck', 'show', 'absent'], main.app\n"
+        "main.app = lambda **options: (atexit.register(print, 'end'), run(**options)); main.start()"
+    )
+    result = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+    assert (result.returncode, result.stdout.splitlines()[-1]) == (2, "end")
+
+
 def test_show_states_requirements_start_and_section() -> None:
     """Both pantographs are 200 m apart; the last one starts at 55 m."""
     name, required = "en50318-2018/ac-simple/320-twin", "en50318-2018/ac-simple/static"
@@ -462,7 +474,7 @@ def test_bad_input_leaves_no_folder(command: tuple[str, ...], tmp_path: Path, mo
 @pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is a device of Linux")
 @pytest.mark.parametrize("redirection", ["> /dev/full", "| head -1 > /dev/null"])
 def test_output_that_cannot_be_written_gives_no_traceback(redirection: str) -> None:
-    command = f"{sys.executable} -c 'from pantocheck.conformance.app.main import main; main()'"
+    command = f"{sys.executable} -c 'from pantocheck.conformance.app.main import start; start()'"
     shell = f"{command} show en50318-2002/250 {redirection}; {command} --help {redirection}"
     result = subprocess.run(["sh", "-c", shell], capture_output=True, text=True, check=False, timeout=60)
     assert "Traceback" not in result.stderr

@@ -153,8 +153,7 @@ def test_command_prints_texts_of_files_to_a_western_terminal(tmp_path: Path) -> 
     path = tmp_path / "鉄道.toml"
     path.write_text('title = "Königsberg ≤ 鉄道"\nfoo = "\u2264"\n', encoding="utf-8", newline="\n")
     environment = {**os.environ, "PYTHONIOENCODING": "cp1252"}
-    code = "from pantocheck.conformance.app.main import main; main()"
-    arguments = [sys.executable, "-c", code, "check", str(path), "--kind", "line"]
+    arguments = [sys.executable, "-m", "pantocheck", "check", str(path), "--kind", "line"]
     done = subprocess.run(arguments, env=environment, capture_output=True, encoding="cp1252", check=False)
     assert done.returncode == 2
     assert "'??.toml'" in done.stderr
