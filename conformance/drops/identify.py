@@ -10,7 +10,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.drops.classical_poles import find_classical_poles
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
-from pantocheck.conformance.drops.decay_onset import NO_DELAY, find_onset, move_onset, refuse_onset, restore_onset
+from pantocheck.conformance.drops.decay_onset import NO_DELAY, find_onset, find_transients, move_onset, refuse_onset, restore_onset
 from pantocheck.conformance.drops.decay_preparation import (
     REMEDY,
     LinearDecay,
@@ -71,6 +71,8 @@ NOT_CONTAINED = (
     "the residual follows the modes, as if the line moved by itself (light wind); with the classical method, or with "
     "too few poles chosen by the user, the intervals do not contain this motion"
 )
+START = "start poles"
+"""Name of the first step of a search."""
 LEAST_CERTAIN = 3
 """Fewest certain modes of an identification, unless half of its modes are certain."""
 NO_PLAN = IdentificationPlan()
@@ -183,8 +185,9 @@ def identify_decays(
         InputError: The records state one clock, and the decays refute it; or no part of the decays is linear.
     """
     applied: list[SensorClock] = []
+    found: Identification | None = None
     for _ in range(ROUNDS):
-        found = _identify_once(decays, band, start, progress, plan)
+        found = _identify_once(decays, band, start, progress, plan, found)
         onset = find_onset(found.fit) if _is_free(start, plan) else NO_DELAY
         # Poles that the user left out, and transients, would be taken for wrong clocks.
         is_explained = not onset.transients and (start is None or found.fit.misfit < SHARED_POLES)
@@ -249,11 +252,15 @@ def _identify_once(
     start: ComplexArray | None,
     progress: Callable[[str], None],
     plan: IdentificationPlan,
+    earlier: Identification | None,
 ) -> Identification:
-    """Identify decays from their present start, beside ambient motion if they show any."""
+    """Identify decays from their present start, beside ambient motion if they show any.
+
+    The search starts at the poles of an earlier identification, with other clocks or another start of the decays.
+    """
     driven, given = any(decay.driven for decay in decays), None
     if not (driven and _is_free(start, plan)):
-        found = _identify_free_decays(decays, band, start, progress, plan)
+        found = _identify_free_decays(decays, band, start, progress, plan, earlier)
         if not driven and residual_excess(found.fit.poles, [block.data for block in found.fit.blocks]) < LEAST_EXCESS:
             return found
         if not _is_free(start, plan):
@@ -262,7 +269,7 @@ def _identify_once(
             # Poles that were refined without ambient motion follow it.
             given = found if start is None else replace(found, search=PoleSearch((), (("placed by hand", start),)))
     whole = [decay if decay.driven else exclude_stretches(extend_decay(decay, band), plan) for decay in decays]
-    return _identify_driven_decays(whole, band, progress, plan, given)
+    return _identify_driven_decays(whole, band, progress, plan, given, earlier)
 
 
 def _identify_driven_decays(
@@ -271,6 +278,7 @@ def _identify_driven_decays(
     progress: Callable[[str], None],
     plan: IdentificationPlan,
     given: Identification | None,
+    earlier: Identification | None,
 ) -> Identification:
     """Identify decays with ambient motion: the records are blocks of their own, because their motion differs.
 
@@ -282,10 +290,9 @@ def _identify_driven_decays(
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
     progress(f"{name}: poles beside ambient motion")
     if given is None:
-        placed = plan.list_poles("start")
         longest = max(samples, key=lambda part: part[0].shape[0] * part[1])
-        trials = () if placed.size else _try_start_orders(samples, band) or _try_start_orders([longest], band)
-        search = PoleSearch(trials, (("start poles", placed if placed.size else join_start_poles(trials)),))
+        search = _find_start(samples, band, plan, earlier) or _find_start([longest], band, plan, earlier)
+        assert search is not None
     else:
         search = given.search
     hidden = np.zeros(0, dtype=np.complex128) if given is None else given.hidden
@@ -303,8 +310,9 @@ def _identify_free_decays(
     start: ComplexArray | None,
     progress: Callable[[str], None],
     plan: IdentificationPlan,
+    earlier: Identification | None,
 ) -> Identification:
-    """Identify decays without ambient motion; parameters as in `identify_decays`."""
+    """Identify decays without ambient motion; parameters as in `_identify_once`."""
     name = decays[0].record.name
     samples, places = group_into_blocks(decays)
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
@@ -315,7 +323,8 @@ def _identify_free_decays(
     elif start is not None:
         selection, search = _use_poles(start, data)
     else:
-        selection, search = _search_poles(decays, samples, data, band, plan)
+        search = _find_start(samples, band, plan, earlier) or PoleSearch((), ((START, _find_longest(decays).poles),))
+        selection, search = _search_poles(search, data)
     hidden = np.zeros(0, dtype=np.complex128)
     if plan.changes_poles:
         selection, hidden = choose_poles(selection, data, plan)
@@ -350,24 +359,11 @@ def choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
     return band
 
 
-def _search_poles(
-    decays: list[PreparedDecay],
-    samples: list[tuple[RealArray, float]],
-    data: list[DataBlock],
-    band: FrequencyBand,
-    plan: IdentificationPlan,
-) -> tuple[PoleSelection, PoleSearch]:
-    placed = plan.list_poles("start")
-    trials = () if placed.size else _try_start_orders(samples, band)
-    start = join_start_poles(trials) if trials else placed if placed.size else _find_longest(decays).poles
-    selected = select_poles(start, data)
+def _search_poles(started: PoleSearch, data: list[DataBlock]) -> tuple[PoleSelection, PoleSearch]:
+    selected = select_poles(started.steps[-1][1], data)
     complete = find_hidden_poles(selected, data)
-    steps = (
-        ("start poles", start),
-        ("added and removed", selected.poles),
-        ("hidden poles tried", complete.poles),
-    )
-    return complete, PoleSearch(trials, steps)
+    steps = (("added and removed", selected.poles), ("hidden poles tried", complete.poles))
+    return complete, replace(started, steps=(*started.steps, *steps))
 
 
 def _find_longest(decays: list[PreparedDecay]) -> LinearDecay:
@@ -375,13 +371,24 @@ def _find_longest(decays: list[PreparedDecay]) -> LinearDecay:
     return max((decay.linear for decay in decays), key=lambda linear: linear.duration)
 
 
-def _try_start_orders(samples: list[tuple[RealArray, float]], band: FrequencyBand) -> tuple[BandTrials, ...]:
-    """Poles of all orders in all records together; none if their sampling rates differ: the search needs one rate."""
+def _find_start(
+    samples: list[tuple[RealArray, float]], band: FrequencyBand, plan: IdentificationPlan, earlier: Identification | None
+) -> PoleSearch | None:
+    """Start poles: those of the plan, those of an earlier identification, or those of all orders in all records.
+
+    None if the sampling rates of the records differ: the search of all orders needs one rate.
+    """
+    placed = plan.list_poles("start")
+    if placed.size:
+        return PoleSearch((), ((START, placed),))
+    if earlier is not None:
+        return PoleSearch(earlier.search.trials, ((START, earlier.fit.poles[~find_transients(earlier.fit)]),))
     intervals = {dt for _, dt in samples}
     if len(intervals) > 1:
-        return ()
+        return None
     scaled = [np.asarray(channels / channels.std(axis=0)) for channels, _ in samples]
-    return try_orders(scaled, 1 / intervals.pop(), band.low, band.fitted + 0.5)
+    trials = try_orders(scaled, 1 / intervals.pop(), band.low, band.fitted + 0.5)
+    return PoleSearch(trials, ((START, join_start_poles(trials)),))
 
 
 def _use_poles(start: ComplexArray, data: list[DataBlock]) -> tuple[PoleSelection, PoleSearch]:

@@ -16,6 +16,13 @@ from pantocheck.conformance.drops.projection import REFINEMENTS, DataBlock, prep
 SMALLEST_DAMPING_RATIO = 1e-6
 """Lower limit of a damping ratio [-]; slower decays are not observable in a record of some minutes."""
 
+IDLE = 100.0
+"""Cost of a step by the reach of a pole over the reduction that ends a refinement [-].
+
+Poles that the data do not determine stay. Otherwise rounding moves them: steps along close poles amplify it a
+thousandfold each, and the number of poles that are found would depend on the processor.
+"""
+
 NO_SENSORS: NDArray[np.bool_] = np.zeros((0, 0), dtype=np.bool_)
 """Clocks are known."""
 
@@ -70,7 +77,7 @@ def minimise_cost(
     current = build(poles)
     damping = 1e-3
     for _ in range(iterations if poles.size else 0):
-        trial_poles = _step(poles, current.matrix, current.gradient, damping)
+        trial_poles = _step(poles, current.matrix, current.gradient, damping, IDLE * tolerance)
         trial = build(trial_poles)
         gain = current.cost - trial.cost
         if gain > 0:
@@ -85,10 +92,14 @@ def minimise_cost(
     return RefinedPoles(poles[order], current, order)
 
 
-def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: float) -> ComplexArray:
+def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: float, idle: float) -> ComplexArray:
+    """Damped step, in which a change by the reach of a pole costs half of `idle`."""
     m, decay = poles.size, -poles.real
-    scale = np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
-    normalised = matrix / (scale[:, None] * scale)
+    reach = 3 * np.maximum(decay, 0.02)
+    kept = matrix.copy()
+    kept.flat[:: 2 * m + 1] += idle / np.concatenate([3 * decay, reach]) ** 2
+    scale = np.sqrt(np.diag(kept))
+    normalised = kept / (scale[:, None] * scale)
     normalised.flat[:: scale.size + 1] += damping
     right = gradient / scale
     _, change, failed = dposv(normalised, right)
@@ -97,7 +108,6 @@ def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: 
     change = change / scale
     # The model is nearly linear within a threefold decay rate and a frequency shift of a few bandwidths.
     decay_new = np.minimum(np.maximum(decay + change[:m], decay / 3), decay * 3)
-    reach = 3 * np.maximum(decay, 0.02)
     omega = np.maximum(poles.imag + np.minimum(np.maximum(change[m:], -reach), reach), 1e-3)
     return np.asarray(-np.maximum(decay_new, SMALLEST_DAMPING_RATIO * omega) + 1j * omega)
 
