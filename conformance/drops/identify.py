@@ -10,7 +10,14 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.drops.classical_poles import find_classical_poles
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
-from pantocheck.conformance.drops.decay_onset import NO_DELAY, find_onset, find_transients, move_onset, refuse_onset, restore_onset
+from pantocheck.conformance.drops.decay_onset import (
+    NO_DELAY,
+    find_onset,
+    find_transients,
+    move_onset,
+    refuse_onset,
+    restore_onset,
+)
 from pantocheck.conformance.drops.decay_preparation import (
     REMEDY,
     LinearDecay,
@@ -372,7 +379,10 @@ def _find_longest(decays: list[PreparedDecay]) -> LinearDecay:
 
 
 def _find_start(
-    samples: list[tuple[RealArray, float]], band: FrequencyBand, plan: IdentificationPlan, earlier: Identification | None
+    samples: list[tuple[RealArray, float]],
+    band: FrequencyBand,
+    plan: IdentificationPlan,
+    earlier: Identification | None,
 ) -> PoleSearch | None:
     """Start poles: those of the plan, those of an earlier identification, or those of all orders in all records.
 

@@ -212,7 +212,7 @@ def whiten(blocks: list[DataBlock], noise: Sequence[Noise]) -> list[DataBlock]:
 # References:
 #     [1] Y. Yamamoto, Y. Nakatsukasa, Y. Yanagisawa, T. Fukaya, Roundoff error analysis of the CholeskyQR2 algorithm,
 #         Electronic Transactions on Numerical Analysis 44 (2015) 306-326.
-LEAST_DIAGONAL = 1e-4
+LEAST_DIAGONAL = 1e-5
 """Smallest diagonal entry of the factor of columns of unit length for which the Gram matrix is used [-].
 
 The method holds up to a condition number of 1e8. The diagonal overestimates the smallest singular value, of columns
@@ -220,7 +220,9 @@ with a whitening twentyfold.
 """
 
 REFINEMENTS = 2
-"""Number of refinements of a solution; each reduces its error by 1e-16 times the squared condition number."""
+"""Largest number of refinements of a solution; each reduces its error by 1e-16 times the squared condition number."""
+LAST_CORRECTION = 1e-8
+"""Correction over the solution, below which the next refinement would change rounding only [-]."""
 
 
 def prepare_elimination(columns: RealArray) -> Callable[[RealArray, int], tuple[RealArray, RealArray]]:
@@ -285,11 +287,14 @@ class _GramFactor:
     def solve(self, x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
         """Coefficients, (m, c), and residual, (n, c), of right-hand sides x; every pass after the first refines."""
         length = self.length[:, None]
-        residual, solution = x, np.zeros((self.columns.shape[1], x.shape[1]))
+        residual, scaled = x, np.zeros((self.columns.shape[1], x.shape[1]))
         for _ in range(passes):
-            solution += dpotrs(self.unit_upper, self.columns.T @ residual / length)[0] / length
-            residual = x - self.columns @ solution
-        return solution, residual
+            correction = dpotrs(self.unit_upper, self.columns.T @ residual / length)[0]
+            scaled += correction
+            residual = x - self.columns @ (scaled / length)
+            if np.abs(correction).max(initial=0.0) < LAST_CORRECTION * np.abs(scaled).max(initial=0.0):
+                break
+        return scaled / length, residual
 
 
 def _factor_gram_matrix(columns: RealArray) -> _GramFactor:

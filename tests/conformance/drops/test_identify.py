@@ -17,7 +17,13 @@ from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_writing import write_drop_csv
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
-from pantocheck.conformance.drops.identify import _find_longest, _require_certain, _try_start_orders, identify_modes
+from pantocheck.conformance.drops.identify import (
+    NO_PLAN,
+    _find_longest,
+    _find_start,
+    _require_certain,
+    identify_modes,
+)
 from pantocheck.conformance.drops.line_fit import group_into_blocks
 from pantocheck.conformance.drops.mode_groups import number_groups
 from pantocheck.conformance.drops.pole_refinement import refine_poles
@@ -143,7 +149,7 @@ def test_records_of_different_rates_start_from_the_poles_of_the_longest_decay(or
     decays = [prepare_decay(build_record(synthetic), band) for synthetic in drops]
     samples, _ = group_into_blocks(decays)
     assert len({dt for _, dt in samples}) == 2
-    assert _try_start_orders(samples, band) == ()
+    assert _find_start(samples, band, NO_PLAN, None) is None
     start = _find_longest(decays).poles
     assert np.array_equal(start, max(decays, key=lambda decay: decay.linear.end).linear.poles)
     assert not np.array_equal(start, min(decays, key=lambda decay: decay.linear.end).linear.poles)
