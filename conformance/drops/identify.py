@@ -192,9 +192,9 @@ def identify_decays(
         InputError: The records state one clock, and the decays refute it; or no part of the decays is linear.
     """
     applied: list[SensorClock] = []
-    found: Identification | None = None
+    earlier: Identification | None = None
     for _ in range(ROUNDS):
-        found = _identify_once(decays, band, start, progress, plan, found)
+        found = earlier = _identify_once(decays, band, start, progress, plan, earlier)
         onset = find_onset(found.fit) if _is_free(start, plan) else NO_DELAY
         # Poles that the user left out, and transients, would be taken for wrong clocks.
         is_explained = not onset.transients and (start is None or found.fit.misfit < SHARED_POLES)
