@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-RATE = 500.0
+RATE = 250.0
 
 FORCE_PROFILE = """
 schema = "pantocheck.profile/1"

@@ -14,18 +14,13 @@ from pantocheck.conformance.pages.damping_page import build_damping_document
 from pantocheck.conformance.results.damping_format import DampingResults
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model import Catenary
-from verification.tables.line_coverage import DAMPING, TOLERANCES, build_line, list_intervals
-from verification.tables.line_coverage import measure_modes as measure_line_modes
+from verification.tables.line_coverage import DAMPING, TOLERANCES, build_line, list_intervals, measure_modes
 
 SPLIT = (1.02, 0.98)
 """Factors of the tensions of contact and messenger wire on those of the line file."""
 
 ELEMENT = 3.0
 """Length of the elements of line and fit [m]: both have the same errors of discretisation."""
-
-
-def measure_modes(line: Catenary, random: np.random.Generator) -> tuple[Mode, ...]:
-    return measure_line_modes(line, random, ELEMENT)
 
 
 @pytest.fixture(scope="module")
@@ -36,13 +31,13 @@ def line() -> Catenary:
 @pytest.fixture(scope="module")
 def modes(line: Catenary) -> tuple[Mode, ...]:
     """Modes of the line with both tensions wrong."""
-    return measure_modes(scale_line(line, MECHANICAL[:2], SPLIT), np.random.default_rng(1))
+    return measure_modes(scale_line(line, MECHANICAL[:2], SPLIT), np.random.default_rng(1), ELEMENT)
 
 
 @pytest.fixture(scope="module")
 def right_modes(line: Catenary) -> tuple[Mode, ...]:
     """Modes of the line as its file states it."""
-    return measure_modes(line, np.random.default_rng(8))
+    return measure_modes(line, np.random.default_rng(8), ELEMENT)
 
 
 def fit(modes: tuple[Mode, ...], line: Catenary, *free: str) -> DampingResults:
@@ -134,7 +129,7 @@ def test_a_group_that_the_wires_do_not_explain_is_named(right_modes: tuple[Mode,
 def test_bending_stiffness_is_not_taken_for_tension(line: Catenary) -> None:
     """A messenger wire 1.8 times as stiff: an exact stiffness would move both tensions out of their intervals."""
     stiff = scale_line(line, BENDING, (1.0, 1.8))
-    results = fit(measure_modes(stiff, np.random.default_rng(13)), line, "tensions")
+    results = fit(measure_modes(stiff, np.random.default_rng(13), ELEMENT), line, "tensions")
     assert all(row.determined for row in results.properties)
     assert all(low <= 1 <= high for _, low, _, high in list_intervals(results, np.ones(6)))
     assert results.line.refuted == ()
@@ -179,7 +174,9 @@ def test_common_coefficients_and_unknown_groups(line: Catenary) -> None:
     rayleigh = DAMPING[line.wires[0].kind]
     equal = replace(line, damping=dict.fromkeys(DAMPING, rayleigh))
     options = FitOptions("common", tolerances=np.diag(TOLERANCES**2))
-    results = build_damping_results(measure_modes(equal, np.random.default_rng(12)), line, ELEMENT, "m", options)
+    results = build_damping_results(
+        measure_modes(equal, np.random.default_rng(12), ELEMENT), line, ELEMENT, "m", options
+    )
     assert [c.kind for c in results.coefficients] == ["wires", "wires"]
     for c in results.coefficients:
         assert c.value == pytest.approx(getattr(rayleigh, f"{c.matrix}_coefficient"), rel=0.02)

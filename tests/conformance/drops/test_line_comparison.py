@@ -221,16 +221,15 @@ def test_difference_names_the_record_if_there_are_two_lines(file: LineFile, cate
 
 def test_fit_on_the_line_of_the_record_returns_its_damping(fitted: DampingResults) -> None:
     """Perfect modes of the same mesh: every mode is matched, and each coefficient returns within 1 %."""
-    results = fitted
-    assert (results.line.state, results.warnings) == ("consistent", ())
-    assert (results.matching.modes, results.matching.matched, results.matching.matched_share) == (30, 30, 1.0)
-    assert results.matching.lowest_mac == pytest.approx(1.0, abs=1e-6)
-    for c in results.coefficients:
+    assert (fitted.line.state, fitted.warnings) == ("consistent", ())
+    assert (fitted.matching.modes, fitted.matching.matched, fitted.matching.matched_share) == (30, 30, 1.0)
+    assert fitted.matching.lowest_mac == pytest.approx(1.0, abs=1e-6)
+    for c in fitted.coefficients:
         assert (c.determined, c.reason) == (True, "")
         assert c.value == pytest.approx(getattr(DAMPING[Kind(c.kind)], f"{c.matrix}_coefficient"), rel=0.01)
-    text = write_damping_toml(results)
+    text = write_damping_toml(fitted)
     comments = [line for line in text.splitlines() if line.startswith("#")]
-    assert len(comments) == len(results.coefficients)
+    assert len(comments) == len(fitted.coefficients)
     assert all(": nominal 95 % interval " in line for line in comments)
     assert Damping.model_validate(tomllib.loads(text)["damping"]).contact_wire.stiffness_coefficient_s > 0
 

@@ -62,7 +62,7 @@ def test_the_same_file_twice_is_one_run_with_the_samples_of_the_file(tmp_path: P
         np.testing.assert_array_equal(getattr(stored, name), getattr(own, name))
     assert sidecar.columns == read_samples(path)[1].columns
     assert run.facts.files[1].name == "a.csv"
-    assert run.facts.to_km == pytest.approx(10.2, abs=0.0002)  # one sample of 0.14 m
+    assert run.facts.to_km == pytest.approx(10.2, abs=0.0003)  # one sample of 0.28 m
 
 
 def test_refused_files_are_listed_until_they_are_corrected(tmp_path: Path) -> None:
@@ -148,4 +148,4 @@ def test_files_without_a_sidecar_share_one_and_suspicions_are_kept(tmp_path: Pat
     path.write_text("\n".join([*lines[:200], *lines[400:]]) + "\n", encoding="utf-8")
     (item,) = collect([path], tmp_path / "runs", shared)
     assert item.state == "imported"
-    assert any("1 gaps, the longest of 0.402 s" in remark for remark in item.remarks)
+    assert any("1 gaps, the longest of 0.804 s" in remark for remark in item.remarks)

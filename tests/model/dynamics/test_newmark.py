@@ -178,7 +178,7 @@ def pantographs(draw: st.DrawFn) -> Pantograph:
     )
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(small_lines(), st.lists(pantographs(), min_size=1, max_size=2), st.floats(10.0, 110.0), st.floats(0.0, 2.0))
 def test_step_equals_the_plain_implementation_on_any_small_line(
     catenary: Catenary, several: list[Pantograph], speed: float, drop: float

@@ -210,7 +210,9 @@ def test_explorer_needs_one_case_with_a_train(name: str, message: str) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for a single process")
 def test_command_prints_its_address_and_ends_with_ctrl_c() -> None:
-    command = [sys.executable, "-m", "pantocheck", "explore", CASE]
+    code = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"  # the parent may ignore it
+    code += "; from pantocheck.conformance.app.main import main; main()"
+    command = [sys.executable, "-c", code, "explore", CASE]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
         address = urlsplit(process.stderr.readline().strip())
