@@ -317,11 +317,11 @@ def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> Join
     # A coefficient of damping is never negative.
     low = np.where(np.arange(unknowns) < len(own), -np.inf, 0.0)
     solution = scipy.optimize.lsq_linear(both[:, :-1], both[:, -1], (low, np.inf)).x
-    information, of_prior = data[:, :-1].T @ data[:, :-1], held[:, :-1].T @ held[:, :-1]
-    narrow = np.linalg.pinv(information + of_prior, hermitian=True)
+    narrow = _invert_normal_matrix(both[:, :-1])
     left = data[:, -1] - data[:, :-1] @ solution
-    misfit = float(left @ left) / max(left.size - float(np.trace(narrow @ information)), 1.0)
-    covariance = np.linalg.pinv(information / max(misfit, 1.0) + of_prior, hermitian=True)
+    shares = np.einsum("ni,ij,nj->", data[:, :-1], narrow, data[:, :-1])
+    misfit = float(left @ left) / max(left.size - float(shares), 1.0)
+    covariance = _invert_normal_matrix(np.vstack([data / np.sqrt(max(misfit, 1.0)), held])[:, :-1])
     moved = problem.factors.copy()
     moved[free] += np.clip((scale * solution)[: len(own)], -LARGEST_STEP, LARGEST_STEP)
     residual, scaled = rows.target - matrix @ (scale * solution), matrix[ratio] * scale
@@ -353,3 +353,9 @@ def _solve_rows(problem: _Problem, used: IntegerArray, scatter: Scatter) -> Join
 def _whiten(covariance: RealArray, rows: RealArray) -> RealArray:
     """Rows times the inverse of the Cholesky factor of their covariance."""
     return np.asarray(scipy.linalg.solve_triangular(np.linalg.cholesky(covariance), rows, lower=True))
+
+
+def _invert_normal_matrix(rows: RealArray) -> RealArray:
+    """Inverse of A'A from the singular values of rows A: the product A'A has lost half of their digits."""
+    inverse = np.linalg.pinv(rows)
+    return np.asarray(inverse @ inverse.T)

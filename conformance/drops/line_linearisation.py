@@ -20,18 +20,11 @@ from pantocheck.conformance.drops.mode_matching import (
 )
 from pantocheck.conformance.line.line_parameters import LineParameter, scale_line
 from pantocheck.conformance.results.identified_modes import Mode
-from pantocheck.model import Catenary, DiscretisedLine, Kind, Rayleigh, discretise
-from pantocheck.model.discretisation.discretised_line import with_damping
+from pantocheck.model import Catenary, DiscretisedLine, Kind, Rayleigh
+from pantocheck.model.discretisation.discretised_line import with_damping, with_properties
 from pantocheck.model.modal.modal_damping import apply_modal_bands
-from pantocheck.model.modal.reduced_line import (
-    NeighbouringLines,
-    ReducedLine,
-    ReducedModes,
-    project_matrix,
-    reduce_line,
-    solve_reduced,
-    span_shapes,
-)
+from pantocheck.model.modal.mode_derivatives import ModeDerivatives, NeighbouringLines, derive_modes
+from pantocheck.model.modal.modes import damping_forms
 from pantocheck.model.statics.assembly import assemble_matrices
 
 STEP = 1e-3
@@ -94,32 +87,28 @@ def linearise_line(
     """
     changed = scale_line(line, parameters, factors.tolist())
     matched = match_modes(usable, changed, element, source)
-    places = tuple(sorted(x for _, x in find_sensor_positions(usable, changed, source)))
 
-    def discretise_beside(number: int, step: float) -> DiscretisedLine:
+    def change_property(number: int, step: float) -> DiscretisedLine:
         moved = factors.copy()
         moved[number] += step
-        return discretise(scale_line(line, parameters, moved.tolist()), element, places)
+        return with_properties(matched.mesh, scale_line(line, parameters, moved.tolist()))
 
     neighbours = [
-        NeighbouringLines(discretise_beside(n, -STEP), discretise_beside(n, STEP), 2 * STEP)
-        for n in range(len(parameters))
+        NeighbouringLines(change_property(n, -STEP), change_property(n, STEP), 2 * STEP) for n in range(len(parameters))
     ]
-    reduced = reduce_line(matched.mesh, matched.shapes, neighbours)
-    span = _Span(matched, neighbours, reduced, solve_reduced(reduced, np.zeros(len(parameters))))
-    dampers = span.derive_ratios({})
-    columns = [
-        span.derive_ratios({Kind(kind): UNIT_DAMPING[matrix]}) - dampers for kind in WIRES for matrix in MATRICES
-    ]
-    stated = span.derive_ratios(list_other_damping(line))
+    span = _Span(matched, neighbours, derive_modes(matched.mesh, matched.shapes, neighbours))
+    others = list_other_damping(line)
+    units = [others | {Kind(kind): UNIT_DAMPING[matrix]} for kind in WIRES for matrix in MATRICES]
+    stated, *with_units = span.derive_ratios([others, *units])
+    columns = np.array(with_units) - stated
     bands = tuple(replace(band, damping_ratio=0.0) for band in line.modal_damping)
     stated = stated * apply_modal_bands(np.ones(len(stated)), span.frequency, bands)[:, None]
     return Linearisation(
         matched,
         span.frequency,
         span.frequency_slope,
-        np.array([column[:, 0] for column in columns]).T,
-        np.array([column[:, 1:] for column in columns]).transpose(1, 0, 2),
+        columns[:, :, 0].T,
+        columns[:, :, 1:].transpose(1, 0, 2),
         stated[:, 0],
         stated[:, 1:],
         *_derive_shapes(span, find_sensor_positions(usable, changed, source)),
@@ -136,8 +125,7 @@ class _Span:
 
     matched: MatchedModes
     neighbours: Sequence[NeighbouringLines]
-    reduced: ReducedLine
-    modes: ReducedModes
+    modes: ModeDerivatives
 
     @property
     def paired(self) -> IntegerArray:
@@ -147,38 +135,33 @@ class _Span:
     @property
     def frequency(self) -> RealArray:
         """Computed frequencies, (m,) [Hz]."""
-        return np.asarray(np.sqrt(self.modes.eigenvalue[self.paired]) / (2 * np.pi))
+        return self.matched.shapes.frequency[self.paired]
 
     @property
     def frequency_slope(self) -> RealArray:
         """Derivatives of their logarithms, (m, p) [-]."""
-        slope = self.modes.eigenvalue_derivative / (2 * self.modes.eigenvalue)
-        return np.asarray(slope[:, self.paired].T)
+        return self.modes.eigenvalue[:, self.paired].T / (2 * (2 * np.pi * self.frequency[:, None]) ** 2)
 
-    def derive_ratios(self, damping: Mapping[Kind, Rayleigh]) -> RealArray:
-        """Damping ratios with a damping, and behind them their derivatives by the factors, (m, 1 + p)."""
+    def derive_ratios(self, dampings: Sequence[Mapping[Kind, Rayleigh]]) -> RealArray:
+        """Damping ratios with d dampings, and behind them their derivatives by the factors, (d, m, 1 + p)."""
 
-        form = project_matrix(self.reduced.vectors, assemble_matrices(with_damping(self.matched.mesh, damping)).damping)
-        changes = [self._derive_form(each, damping, form.shape) for each in self.neighbours]
-        slopes = self.modes.form_derivative(form, np.array(changes).reshape(-1, *form.shape))[:, self.paired].T
-        double = 4 * np.pi * self.frequency
-        values = np.diag(self.modes.vector.T @ form @ self.modes.vector)[self.paired] / double
-        return np.column_stack([values, slopes / double[:, None] - values[:, None] * self.frequency_slope])
+        def damp(line: DiscretisedLine) -> list[DiscretisedLine]:
+            return [with_damping(line, damping) for damping in dampings]
 
-    def _derive_form(
-        self, neighbours: NeighbouringLines, damping: Mapping[Kind, Rayleigh], shape: tuple[int, ...]
-    ) -> RealArray:
-        """Derivative of the damping in the span by one property; zero if neighbouring lines have the same dampers."""
-        lower, upper = (with_damping(line, damping) for line in (neighbours.lower, neighbours.upper))
-        if all(map(np.array_equal, _list_dampers(lower), _list_dampers(upper))):
-            return np.zeros(shape)
-        difference = assemble_matrices(upper).damping - assemble_matrices(lower).damping
-        return project_matrix(self.reduced.vectors, difference / neighbours.distance)
-
-
-def _list_dampers(line: DiscretisedLine) -> tuple[RealArray, ...]:
-    """Arrays from which the damping matrix of a line is assembled."""
-    return (*line.beams.dampers, line.connectors.damping)
+        shape, damped = self.matched.shapes.shape, damp(self.matched.mesh)
+        forms = damping_forms(damped, shape)[:, self.paired]
+        changes = [
+            (damping_forms(damp(each.upper), shape) - damping_forms(damp(each.lower), shape)) / each.distance
+            for each in self.neighbours
+        ]
+        slopes = np.array(
+            [
+                self.modes.form_derivative(assemble_matrices(line).damping, change)[:, self.paired].T
+                for line, change in zip(damped, np.array(changes).swapaxes(0, 1), strict=True)
+            ]
+        )
+        slopes -= forms[:, :, None] * self.frequency_slope
+        return np.concatenate([forms[:, :, None], slopes], axis=2) / (4 * np.pi * self.frequency[:, None])
 
 
 def _derive_shapes(span: _Span, positions: Positions) -> tuple[RealArray, RealArray, IntegerArray]:
@@ -186,8 +169,7 @@ def _derive_shapes(span: _Span, positions: Positions) -> tuple[RealArray, RealAr
 
     A shape has no scale: both are taken at right angles to the computed shape, over the standard deviations.
     """
-    shapes = span_shapes(span.matched.mesh, span.reduced)
-    measured, known = compute_sensor_shapes(span.matched.paired, span.matched.mesh, shapes, positions)
+    measured, known = compute_sensor_shapes(span.matched.paired, span.matched.mesh, span.modes.span, positions)
     residuals, slopes, numbers = [np.zeros(0)], [np.zeros((0, len(span.neighbours)))], []
     for number, (mode, shape, at_sensors, j) in enumerate(
         zip(span.matched.paired, measured, known, span.paired, strict=True)
@@ -198,8 +180,8 @@ def _derive_shapes(span: _Span, positions: Positions) -> tuple[RealArray, RealAr
         std = np.hypot(np.array(stds) / np.abs(shape).max(), SHAPE_ERROR)
         # A complex factor of modulus one makes the shape as real as it can be.
         turned = (shape * np.exp(-0.5j * np.angle(np.sum(shape**2)))).real / np.abs(shape).max() / std
-        computed = span.modes.vector[:, j] @ at_sensors / std
-        change = (span.modes.rotation[:, :, j] @ span.modes.vector.T) @ at_sensors / std
+        computed = at_sensors[j] / std
+        change = span.modes.rotation[:, :, j] @ at_sensors / std
         across = np.linalg.svd(computed[None])[2][1:]
         residuals.append(across @ turned)
         slopes.append((turned @ computed) / (computed @ computed) * across @ change.T)

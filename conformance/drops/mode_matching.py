@@ -41,10 +41,10 @@ class ModePair:
     mac: float
 
 
-def modal_assurance(measured: ComplexArray, computed: RealArray) -> float:
-    """Modal assurance criterion of two shapes at the same sensors; 1 if they are multiples of each other."""
-    norm = float(np.sum(np.abs(measured) ** 2) * np.sum(computed**2))
-    return float(np.abs(np.vdot(measured, computed)) ** 2) / norm if norm > 0 else 0.0
+def modal_assurance(measured: ComplexArray, computed: RealArray) -> RealArray:
+    """Modal assurance criterion of a shape, (s,), and others, (n, s), at the same sensors; 1 for a multiple of it."""
+    norm = np.sum(np.abs(measured) ** 2) * np.sum(computed**2, axis=1)
+    return np.abs(computed @ measured.conj()) ** 2 / np.where(norm > 0, norm, 1.0)
 
 
 def pair_modes(
@@ -66,13 +66,9 @@ def pair_modes(
     Returns:
         Pairs, in the order of the measured modes.
     """
-    m, n = measured_frequency.size, computed_frequency.size
-    if m == 0 or n == 0:
+    if measured_frequency.size == 0 or computed_frequency.size == 0:
         return ()
-    similarity = np.array(
-        [[modal_assurance(measured_shapes[i], computed_shapes[i][j]) for j in range(n)] for i in range(m)],
-        dtype=np.float64,
-    )
+    similarity = np.array(list(map(modal_assurance, measured_shapes, computed_shapes)))
     single = np.array([shape.size < 2 for shape in measured_shapes])
     similarity[single] = 1.0
     factor = _common_factor(measured_frequency, computed_frequency, similarity)
@@ -90,8 +86,10 @@ def _common_factor(measured: RealArray, computed: RealArray, similarity: RealArr
     """Factor on the computed frequencies with the best agreement with the measured ones."""
     trials = np.linspace(1 - LARGEST_FREQUENCY_GAP, 1 + LARGEST_FREQUENCY_GAP, 201)
 
+    logarithm = np.log(measured[:, None] / computed)
+
     def misfit(factor: float) -> float:
-        distance = np.abs(np.log(measured[:, None] / (factor * computed[None, :]))) / 0.01
+        distance = (logarithm - np.log(factor)) / 0.01
         return float(np.sum(np.minimum((distance**2 + 4 * (1 - similarity)).min(axis=1), 4.0)))
 
     return float(min(trials, key=misfit))

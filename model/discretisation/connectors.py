@@ -6,7 +6,6 @@ force over length. With the coefficients c of the rows, d is the sum of c times 
 by -c times the tension.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -26,8 +25,7 @@ Large against the wires (about 1e5 N/m at a point) and small enough for double p
 """
 
 
-@dataclass(frozen=True)
-class Bar:
+class Bar(NamedTuple):
     """One connector; fields as in `Connectors`, coefficients by row."""
 
     station: int
@@ -112,11 +110,11 @@ def _droppers(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
     """Unilateral bars along the droppers."""
     damping_time = catenary.rayleigh(Kind.DROPPER).stiffness_coefficient
     bars = []
-    for n, dropper in enumerate(catenary.droppers):
-        stiffness = dropper.taut_stiffness(float(state.dropper_length[n]))
-        y, z = map(float, state.dropper_direction[n])
+    at_rest = (state.dropper_length.tolist(), state.dropper_direction.tolist(), state.dropper_tension.tolist())
+    for dropper, length, (y, z), preload in zip(catenary.droppers, *at_rest, strict=True):
+        stiffness = dropper.taut_stiffness(length)
         coefficient = _coefficients(mesh, dropper.upper, dropper.lower, (y, z))
-        station, preload = mesh.station(dropper.position), float(state.dropper_tension[n])
+        station = mesh.station(dropper.position)
         bars.append(Bar(station, coefficient, stiffness, damping_time * stiffness, preload, unilateral=True))
     return bars
 

@@ -56,7 +56,15 @@ def discretise(catenary: Catenary, element_length: float, places: tuple[float, .
         NoInitialState: The prescribed geometry has no equilibrium.
     """
     mesh = build_mesh(catenary, element_length, places)
-    beams = build_beams(catenary, mesh)
+    return _build_line(catenary, mesh, build_beams(catenary, mesh))
+
+
+def with_properties(line: DiscretisedLine, catenary: Catenary) -> DiscretisedLine:
+    """Replace the properties of a line, but for its wires and places, and compute its initial state."""
+    return _build_line(catenary, line.mesh, build_beams(catenary, line.mesh, line.beams))
+
+
+def _build_line(catenary: Catenary, mesh: Mesh, beams: Beams) -> DiscretisedLine:
     state = compute_initial_state(catenary, mesh, beams)
     connectors = build_connectors(catenary, mesh, beams, state)
     stretches = build_held_stretches(catenary, mesh, state.deflection)
@@ -75,7 +83,7 @@ def max_wave_speed(line: DiscretisedLine) -> float:
 def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> DiscretisedLine:
     """Replace the damping of a line; its initial state does not depend on it."""
     catenary = replace(line.catenary, damping=dict(damping))
-    beams = build_beams(catenary, line.mesh, line.beams.flexibility)
+    beams = build_beams(catenary, line.mesh, line.beams)
     connectors = build_connectors(catenary, line.mesh, beams, line.state)
     return replace(line, catenary=catenary, beams=beams, connectors=connectors)
 

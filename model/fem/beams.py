@@ -35,8 +35,9 @@ def sum_lumped_parts(catenary: Catenary, mesh: Mesh) -> tuple[Array, Array, Arra
     The damping includes the Rayleigh damping of the kind of each part.
     """
     mass, stiffness, damping = (np.zeros((mesh.rows, mesh.position.size)) for _ in range(3))
+    coefficients = {kind: catenary.rayleigh(kind) for kind in Kind}
     for part in _lumped_parts(catenary, mesh):
-        station, rayleigh = mesh.station(part.position), catenary.rayleigh(part.kind)
+        station, rayleigh = mesh.station(part.position), coefficients[part.kind]
         mass[part.row, station] += part.mass
         stiffness[part.row, station] += part.stiffness
         damping[part.row, station] += (
@@ -95,15 +96,9 @@ class Beams(NamedTuple):
     flexibility: Array
     """Residual flexibility of each element, see `element_flexibility`, (B, S-1, 7) [m/N]."""
 
-    @property
-    def dampers(self) -> tuple[Array, ...]:
-        """Arrays from which the damping matrix is assembled."""
-        by_stiffness = (self.stiffness_coefficient[:, None] * part for part in (self.tension, self.bending_stiffness))
-        return self.mass_coefficient[:, None] * self.mass_per_length, *by_stiffness, self.lumped_damping
 
-
-def build_beams(catenary: Catenary, mesh: Mesh, known_flexibility: Array | None = None) -> Beams:
-    """Build the wires and lumped parts of a line as rows of beams; `known_flexibility`: that of the same wires."""
+def build_beams(catenary: Catenary, mesh: Mesh, known: Beams | None = None) -> Beams:
+    """Build wires and lumped parts as rows of beams; `known` has the flexibility of equal wires, on the mesh."""
     stations = mesh.position.size
     length = np.diff(mesh.position)
     middle = mesh.position[:-1] + length / 2
@@ -125,9 +120,7 @@ def build_beams(catenary: Catenary, mesh: Mesh, known_flexibility: Array | None 
         free[row, first : last + 1] = True
         if wire.kind is not Kind.STITCH_WIRE:  # a stitch wire ends in clamps, not in anchors
             free[row, [first, last], 0] = False
-    flexibility = known_flexibility
-    if flexibility is None:
-        flexibility = _flexibility_of_rows(mesh, length, tension, bending_stiffness)
+    flexibility = _flexibility_of_rows(mesh, length, tension, bending_stiffness, known)
     at_station = np.array([station_flexibility(elements) for elements in flexibility])
     lumped_mass, lumped_stiffness, lumped_damping = sum_lumped_parts(catenary, mesh)
     rayleigh = [catenary.rayleigh(kind) for kind in mesh.row_kind]
@@ -147,11 +140,19 @@ def build_beams(catenary: Catenary, mesh: Mesh, known_flexibility: Array | None 
     )
 
 
-def _flexibility_of_rows(mesh: Mesh, length: Array, tension: Array, bending_stiffness: Array) -> Array:
+def _flexibility_of_rows(
+    mesh: Mesh, length: Array, tension: Array, bending_stiffness: Array, known: Beams | None
+) -> Array:
     """Residual flexibility of every element of all rows; a lateral row has the wires of its vertical row."""
+
+    def compute_row(row: int) -> Array:
+        wire = (tension[row], bending_stiffness[row])
+        if known is not None and np.array_equal(wire, (known.tension[row], known.bending_stiffness[row])):
+            return np.asarray(known.flexibility[row])
+        return element_flexibility(length, *wire)
+
     fields = len(set(mesh.row_field))
-    vertical = range(mesh.rows // fields)
-    return np.array([element_flexibility(length, tension[row], bending_stiffness[row]) for row in vertical] * fields)
+    return np.array([compute_row(row) for row in range(mesh.rows // fields)] * fields)
 
 
 def element_stiffness(beams: Beams, row: int) -> Array:
@@ -162,11 +163,6 @@ def element_stiffness(beams: Beams, row: int) -> Array:
 def wire_stiffness(beams: Beams, row: int) -> "scipy.sparse.csr_array":
     """Stiffness of the wires of one row, (2 S, 2 S), unknowns (w, r) by station; without lumped parts and supports."""
     return assemble_row(element_stiffness(beams, row))
-
-
-def wire_mass(beams: Beams, row: int) -> "scipy.sparse.csr_array":
-    """Consistent mass of the wires of one row; unknowns as in `wire_stiffness`."""
-    return assemble_row(beam.mass(beams.length, beams.mass_per_length[row]))
 
 
 def assemble_row(elements: Array) -> "scipy.sparse.csr_array":

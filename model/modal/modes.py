@@ -1,14 +1,16 @@
 """Modes of the line about its initial state, every dropper taut."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, eigsh
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.catenary import Kind, Rayleigh
 from pantocheck.model.description.one_thread import use_one_thread
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, with_damping
+from pantocheck.model.fem import beam
 from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, free_unknowns
 from pantocheck.model.statics.unit_responses import factored_stiffness
 
@@ -56,14 +58,23 @@ def compute_modes(line: DiscretisedLine, count: int) -> Modes:
     inverse = LinearOperator(matrices.stiffness.shape, matvec=solve_free, dtype=np.float64)
     w2, vectors = eigsh(matrices.stiffness, count, matrices.mass, sigma=0.0, v0=start, OPinv=inverse)
     ascending = np.argsort(w2)
-    shape = np.zeros((count, line.beams.free.size))
-    shape[:, bandwidth_order(line)[matrices.free]] = _normalise_sign(vectors[:, ascending].T)
-    return Modes(np.sqrt(w2[ascending]) / (2 * np.pi), shape.reshape(count, *line.beams.free.shape))
+    return build_modes(line, w2[ascending], _normalise_sign(vectors[:, ascending].T))
+
+
+def build_modes(line: DiscretisedLine, eigenvalue: Array, vectors: Array) -> Modes:
+    """Modes by their squared angular frequencies, (n,) [1/s2], and vectors of the free unknowns, (n, unknowns)."""
+    shape = np.zeros((len(vectors), line.beams.free.size))
+    shape[:, bandwidth_order(line)[free_unknowns(line)]] = vectors
+    return Modes(np.sqrt(eigenvalue) / (2 * np.pi), shape.reshape(-1, *line.beams.free.shape))
 
 
 def compute_modes_below(line: DiscretisedLine, frequency: float) -> Modes:
     """Compute all modes of a line below a frequency [Hz]."""
-    count, largest = 16, free_unknowns(line).size - 2
+    matrices, largest = assemble_matrices(line), free_unknowns(line).size - 2
+    shifted = matrices.stiffness - (2 * np.pi * frequency) ** 2 * matrices.mass
+    # As many pivots are negative as modes lie below (Sylvester's law of inertia); the next mode proves the number.
+    factors = splu(shifted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    count = int(np.sum(factors.U.diagonal() < 0)) + 1
     while True:
         modes = compute_modes(line, min(count, largest))
         if modes.frequency[-1] >= frequency or count >= largest:
@@ -94,20 +105,43 @@ def component_energies(line: DiscretisedLine, modes: Modes) -> ComponentEnergies
     Returns:
         Energies. The damping C = sum of a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 w_j).
     """
-    vectors = free_vectors(line, modes)
     kinds = tuple(Kind)
-    stiffness, mass = (np.zeros((len(vectors), len(kinds))) for _ in range(2))
-    constant = _energy(with_damping(line, {}), vectors)
-    for k, kind in enumerate(kinds):
-        # With one coefficient set to one, the damping matrix is the stiffness or the mass of that component.
-        stiffness[:, k] = _energy(with_damping(line, {kind: Rayleigh(stiffness_coefficient=1.0)}), vectors) - constant
-        mass[:, k] = _energy(with_damping(line, {kind: Rayleigh(mass_coefficient=1.0)}), vectors) - constant
-    return ComponentEnergies(kinds, stiffness, mass)
+    # With one coefficient set to one, the damping matrix is the stiffness or the mass of that component.
+    units = [
+        {kind: unit} for unit in (Rayleigh(stiffness_coefficient=1.0), Rayleigh(mass_coefficient=1.0)) for kind in kinds
+    ]
+    constant, *forms = damping_forms([with_damping(line, damping) for damping in ({}, *units)], modes.shape)
+    return ComponentEnergies(kinds, *((np.array(forms) - constant).reshape(2, len(kinds), -1).transpose(0, 2, 1)))
 
 
-def _energy(line: DiscretisedLine, vectors: Array) -> Array:
-    """Product phi' C phi of every vector with the damping of the line."""
-    return np.asarray(np.einsum("ji,ij->j", vectors, assemble_matrices(line).damping @ vectors.T))
+def damping_forms(lines: Sequence[DiscretisedLine], shape: Array) -> Array:
+    """Products phi' C phi of shapes, (n, rows, stations, 2), with the damping of lines.
+
+    Args:
+        lines: Lines that differ in their damping alone.
+        shape: Shapes of such a line.
+
+    Returns:
+        Products, (lines, n).
+    """
+    beams, connectors = lines[0].beams, lines[0].connectors
+    ends = np.concatenate([shape[:, :, :-1], shape[:, :, 1:]], axis=-1).transpose(1, 2, 0, 3)
+    elements = (
+        beam.stiffness(beams.length, beams.tension, beams.bending_stiffness),
+        beam.mass(beams.length, beams.mass_per_length),
+    )
+    stiffness, mass = (np.einsum("rena,rena->rn", ends @ matrices, ends) for matrices in elements)
+    deflection = shape[..., 0] ** 2
+    elongation = np.einsum("cr,nrc->cn", connectors.coefficient, shape[:, :, connectors.station, 0]) ** 2
+    return np.array(
+        [
+            line.beams.stiffness_coefficient @ stiffness
+            + line.beams.mass_coefficient @ mass
+            + np.tensordot(line.beams.lumped_damping, deflection, ((0, 1), (1, 2)))
+            + line.connectors.damping @ elongation
+            for line in lines
+        ]
+    )
 
 
 def damping_ratios(line: DiscretisedLine, modes: Modes) -> Array:
@@ -120,4 +154,4 @@ def damping_ratios(line: DiscretisedLine, modes: Modes) -> Array:
     Returns:
         Damping ratios, (n,) [-].
     """
-    return _energy(line, free_vectors(line, modes)) / (4 * np.pi * modes.frequency)
+    return np.asarray(damping_forms([line], modes.shape)[0] / (4 * np.pi * modes.frequency))

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.beams import assemble_row, wire_mass, wire_stiffness
+from pantocheck.model.fem.beams import assemble_row
 from pantocheck.model.fem.mass_correction import mass_correction
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
@@ -35,17 +35,15 @@ class GlobalMatrices:
     @cached_property
     def mass(self) -> sp.csc_array:
         """Mass of wires and lumped parts."""
-        beams = self.line.beams
-        return self._assemble(self._masses, beams.lumped_mass, np.zeros_like(self.line.connectors.stiffness))
+        connectors = np.zeros_like(self.line.connectors.stiffness)
+        return self._assemble(self._masses, self.line.beams.lumped_mass, connectors)
 
     @cached_property
     def damping(self) -> sp.csc_array:
         """Damping of wires, lumped parts and connectors."""
         beams = self.line.beams
-        wires = [
-            beams.stiffness_coefficient[row] * stiffness + beams.mass_coefficient[row] * mass
-            for row, (stiffness, mass) in enumerate(zip(self._stiffnesses, self._masses, strict=True))
-        ]
+        wires = self._stiffnesses * beams.stiffness_coefficient[:, None, None, None]
+        wires += self._masses * beams.mass_coefficient[:, None, None, None]
         return self._assemble(wires, beams.lumped_damping, self.line.connectors.damping)
 
     @cached_property
@@ -53,24 +51,32 @@ class GlobalMatrices:
         """Stiffness of wires, lumped parts and connectors."""
         return self._assemble(self._stiffnesses, self.line.beams.lumped_stiffness, self.line.connectors.stiffness)
 
-    @cached_property
-    def _masses(self) -> list[sp.csr_array]:
-        return [wire_mass(self.line.beams, row) for row in range(self.line.mesh.rows)]
+    @property
+    def _masses(self) -> Array:
+        return beam.mass(self.line.beams.length, self.line.beams.mass_per_length)
 
-    @cached_property
-    def _stiffnesses(self) -> list[sp.csr_array]:
-        return [wire_stiffness(self.line.beams, row) for row in range(self.line.mesh.rows)]
+    @property
+    def _stiffnesses(self) -> Array:
+        return beam.stiffness(self.line.beams.length, self.line.beams.tension, self.line.beams.bending_stiffness)
 
-    @cached_property
-    def _directions(self) -> sp.csr_array:
-        return connector_directions(self.line)[self.free]
-
-    def _assemble(self, wires: list[sp.csr_array], lumped: Array, connector: Array) -> sp.csc_array:
-        """Sum of wires, lumped parts and connectors for the free unknowns."""
-        deflections = np.stack([lumped, np.zeros_like(lumped)], axis=-1).ravel()
-        order = bandwidth_order(self.line)[self.free]
-        uncoupled = (sp.block_diag(wires, format="csr") + sp.diags_array(deflections))[order][:, order]
-        return sp.csc_array(uncoupled + self._directions @ sp.diags_array(connector) @ self._directions.T)
+    def _assemble(self, wires: Array, lumped: Array, connector: Array) -> sp.csc_array:
+        """Sum of wires (rows, elements, 4, 4), lumped parts (rows, stations) and connectors for the free unknowns."""
+        place: Indices = np.full(self.line.beams.free.shape, -1)
+        place.ravel()[bandwidth_order(self.line)[self.free]] = np.arange(self.free.size)
+        coefficient, station = self.line.connectors.coefficient, self.line.connectors.station
+        ends, bars = np.concatenate([place[:, :-1], place[:, 1:]], axis=-1), place[:, station, 0].T
+        parts = [
+            (wires, ends[..., None], ends[..., None, :]),
+            (lumped, place[..., 0], place[..., 0]),
+            (connector[:, None, None] * coefficient[..., None] * coefficient[:, None], bars[..., None], bars[:, None]),
+        ]
+        value, row, column = (
+            np.concatenate([np.broadcast_to(part[n], part[0].shape).ravel() for part in parts]) for n in range(3)
+        )
+        free = (row >= 0) & (column >= 0)
+        matrix = sp.csc_array((value[free], (row[free], column[free])), shape=(self.free.size,) * 2)
+        matrix.eliminate_zeros()  # an element without a wire has neither stiffness nor mass
+        return matrix
 
 
 def _unknowns(line: DiscretisedLine, row: int | Indices, station: Indices, slope: int | Indices = 0) -> Indices:

@@ -222,7 +222,7 @@ def test_pairs_by_frequency_and_shapes() -> None:
     assert len(pairs) == 6
     for p in pairs:
         assert p.mac == pytest.approx(1.0)
-    assert modal_assurance(np.array([1.0, 0.0]), np.array([0.0, 1.0])) == 0.0
+    assert modal_assurance(np.array([1.0, 0.0]), np.array([[0.0, 1.0], [2.0, 0.0]])).tolist() == [0.0, 1.0]
     # One sensor has no shape to compare: its similarity is 1, on a node of the computed mode, too.
     (pair,) = pair_modes(np.array([1.0]), [np.array([1.0 + 0.0j])], np.array([1.0]), [np.array([[0.0]])])
     assert (pair.measured, pair.computed, pair.mac) == (0, 0, 1.0)

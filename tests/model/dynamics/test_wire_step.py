@@ -13,7 +13,7 @@ from pantocheck.model.dynamics.extents import find_extents, merge_extents
 from pantocheck.model.dynamics.motion import Layout, build_motion
 from pantocheck.model.dynamics.vectors import round_up
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.beams import element_stiffness, wire_mass, wire_stiffness
+from pantocheck.model.fem.beams import assemble_row, element_stiffness, wire_stiffness
 
 
 def split_mass(h: float) -> Array:
@@ -47,7 +47,8 @@ def test_wire_forces_equal_matrix_products() -> None:
     q, v, a = state.transpose(1, 3, 0, 2).reshape(3, -1)
     q, v = q + dt * v + dt**2 * a, v + dt * a
     alpha, beta = beams.mass_coefficient[0], beams.stiffness_coefficient[0]
-    expected = -wire_stiffness(beams, 0) @ (q + beta * v) - alpha * (wire_mass(beams, 0) @ v)
+    mass = assemble_row(beam.mass(beams.length, beams.mass_per_length[0]))
+    expected = -wire_stiffness(beams, 0) @ (q + beta * v) - alpha * (mass @ v)
     wires = wire_step.build_wire_arrays(beams, merge_extents(find_extents(beams), 8), layout)
     wire_step.predict_wires(dt, wires, motion, Window(0, round_up(stations) - 1))
     computed = np.stack([motion.w, motion.r], axis=-1)[:, 0, :stations].reshape(3, -1)
