@@ -23,7 +23,7 @@ import scipy.sparse as sp
 
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
-from pantocheck.model.modal.modes import Modes, build_modes, free_vectors
+from pantocheck.model.modal.modes import Modes, build_line_modes, free_vectors
 from pantocheck.model.statics.assembly import assemble_matrices, free_unknowns, stretch_directions
 from pantocheck.model.statics.unit_responses import factored_stiffness
 
@@ -77,7 +77,7 @@ def derive_modes(line: DiscretisedLine, modes: Modes, neighbours: Sequence[Neigh
     gap[own, own] = 1.0
     rotation = forms / gap
     rotation[:, own, own] = [-np.einsum("jn,nj->j", vectors, mass @ vectors.T) / 2 for _, mass in changes]
-    return ModeDerivatives(build_modes(line, every, span), span, forms[:, own, own], rotation)
+    return ModeDerivatives(build_line_modes(line, every, span), span, forms[:, own, own], rotation)
 
 
 def _difference_matrices(neighbours: NeighbouringLines) -> tuple[sp.csc_array, sp.csc_array]:

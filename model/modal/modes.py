@@ -58,10 +58,10 @@ def compute_modes(line: DiscretisedLine, count: int) -> Modes:
     inverse = LinearOperator(matrices.stiffness.shape, matvec=solve_free, dtype=np.float64)
     w2, vectors = eigsh(matrices.stiffness, count, matrices.mass, sigma=0.0, v0=start, OPinv=inverse)
     ascending = np.argsort(w2)
-    return build_modes(line, w2[ascending], _normalise_sign(vectors[:, ascending].T))
+    return build_line_modes(line, w2[ascending], _normalise_sign(vectors[:, ascending].T))
 
 
-def build_modes(line: DiscretisedLine, eigenvalue: Array, vectors: Array) -> Modes:
+def build_line_modes(line: DiscretisedLine, eigenvalue: Array, vectors: Array) -> Modes:
     """Modes by their squared angular frequencies, (n,) [1/s2], and vectors of the free unknowns, (n, unknowns)."""
     shape = np.zeros((len(vectors), line.beams.free.size))
     shape[:, bandwidth_order(line)[free_unknowns(line)]] = vectors
