@@ -15,17 +15,18 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.signature_check import check_signatures
 
 
-@pytest.fixture(params=["results.json", "certificate.html"])
-def document(request: pytest.FixtureRequest, tmp_path: Path, signers: Signers) -> Path:
+@pytest.fixture
+def document(tmp_path: Path, signers: Signers) -> Path:
     assert signers
-    path = tmp_path / str(request.param)
-    path.write_bytes(b"<p>r\xc3\xa9sultats</p>\r\n")
-    return path
+    (tmp_path / "results.json").write_bytes(b"<p>r\xc3\xa9sultats</p>\r\n")
+    return tmp_path / "results.json"
 
 
-@pytest.mark.parametrize("encoding", ["der", "pem"])
-def test_signature_beside_the_document(document: Path, signers: Signers, roots_file: Path, encoding: str) -> None:
-    content = document.read_bytes()
+@pytest.mark.parametrize(("name", "encoding"), [("results.json", "der"), ("certificate.html", "pem")])
+def test_signature_beside_the_document(
+    document: Path, signers: Signers, roots_file: Path, name: str, encoding: str
+) -> None:
+    content, document = document.read_bytes(), document.rename(document.with_name(name))
     signature = sign(document, signers.author, encoding=encoding)
     assert signature.name == document.name + ".p7s"
     assert signature.read_bytes().startswith(b"-----BEGIN CMS-----\n") == (encoding == "pem")
