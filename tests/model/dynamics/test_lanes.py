@@ -79,9 +79,6 @@ def core(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return loaded
 
 
-one_width = pytest.mark.parametrize("core", [8], indirect=True, scope="module")
-
-
 @pytest.fixture
 def slackness(core: Core, monkeypatch: pytest.MonkeyPatch) -> list[Array]:
     """Numbers of slack droppers over the steps of each passage in a lane; the core runs in C."""
@@ -129,7 +126,7 @@ def test_passage_does_not_depend_on_the_other_lanes(slackness: list[Array]) -> N
     assert slackness
 
 
-@one_width
+@pytest.mark.parametrize("core", [8], indirect=True, scope="module")
 def test_lanes_give_the_forces_of_the_reference_kernel(slackness: list[Array], monkeypatch: pytest.MonkeyPatch) -> None:
     """To 1e-8 of the largest force, as for a passage alone: sweeps stop at 1e-9 N, which a rigid contact amplifies."""
     line, passages = discretise(PLAIN, 2.5), [
@@ -143,7 +140,6 @@ def test_lanes_give_the_forces_of_the_reference_kernel(slackness: list[Array], m
         assert np.abs(history.force - expected).max() <= 1e-8 * expected.max()
 
 
-@one_width
 def test_lines_without_lanes_run_one_after_another(slackness: list[Array], monkeypatch: pytest.MonkeyPatch) -> None:
     """Distributed forces have no lanes, and neither has another core; a short group is faster alone."""
     passages = [Passage((PANTOGRAPH_2002,), (24.0 + k,), 80.0, 0.02, 2e-3) for k in range(8)]
@@ -164,7 +160,6 @@ def test_lines_without_lanes_run_one_after_another(slackness: list[Array], monke
     assert count_lanes(plain) == 1
 
 
-@one_width
 def test_failure_in_a_lane_is_that_of_the_passage_alone(slackness: list[Array]) -> None:
     """The message states the time since the start of the passage that failed."""
     line = discretise(ROUGH, 1.0)
@@ -179,7 +174,6 @@ def test_failure_in_a_lane_is_that_of_the_passage_alone(slackness: list[Array]) 
         simulate_passages(line, [*passages[:3], replace(WINDOW, duration=100.0)])
 
 
-@one_width
 def test_library_refuses_other_structures(core: Core, tmp_path: Path) -> None:
     """The words of a lane have another size."""
     assert core.library is not None
