@@ -21,7 +21,7 @@ from verification.attacks.field_walk import (
     try_change,
 )
 
-SAMPLE = 6
+SAMPLE = 4
 """Fields that are drawn of the listed ones, and as many of the others."""
 MEANS = {"rerun", "record", "signature", "none"}
 """Means that finds a change; none: no verdict rises by it."""

@@ -270,7 +270,7 @@ def test_command_refuses_what_cannot_run(options: Sequence[str], reason: str, tm
     assert reason in " ".join(result.output.split())
 
 
-@pytest.mark.parametrize(("fault", "exit_code"), [(0, 0), (7, 1)])
+@pytest.mark.parametrize(("fault", "exit_code"), [pytest.param(0, 0, marks=pytest.mark.thorough), (7, 1)])
 def test_command_runs_a_rig_over_udp(
     fault: int, exit_code: int, line: SteppedPassage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
