@@ -211,7 +211,6 @@ def find_unknown(
             # No edge moves faster than the waves, so that no wave of a later cut overtakes that of the first.
             first = cut[0]
             later = time[chosen] >= time[first]
-            travelled = MIN_HALF_WIDTH + limits.wave_speed * (time[chosen][later] - time[first])
-            wave = edge[first] - direction * travelled
+            wave = edge[first] - direction * (MIN_HALF_WIDTH + limits.wave_speed * (time[chosen][later] - time[first]))
             unknown[:, later] |= direction * (position - wave) >= 0
     return unknown

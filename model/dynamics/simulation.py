@@ -103,8 +103,7 @@ def _hide_unknown(
 ) -> Frames:
     """Recorded frames, with NaN where the motion is unknown."""
     request, frames = recorder.request, recorder.build_frames()
-    # The first cut may lie between two frames, so that all steps are searched.
-    chosen = np.array(request.steps) - 1
+    chosen = np.array(request.steps) - 1  # the first cut may lie between two frames
     unknown = find_unknown(window, passage, line.mesh.position[list(request.stations)], time, chosen)
     return replace(frames, displacement=np.where(unknown.T[:, None], np.nan, frames.displacement))
 
