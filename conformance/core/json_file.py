@@ -141,7 +141,7 @@ def _list_parts(tree: Any, encode: Callable[[Any], str], line: str) -> Iterator[
             before = ","
         yield line + "}"
     elif isinstance(tree, list) and tree:
-        if _FLOAT.issuperset(map(type, tree)) and all(map(math.isfinite, tree)):
+        if set(map(type, tree)) == {float} and all(map(math.isfinite, tree)):
             yield f"[{inner}{f',{inner}'.join(map(float.__repr__, tree))}"
         else:
             before = "["
@@ -152,9 +152,6 @@ def _list_parts(tree: Any, encode: Callable[[Any], str], line: str) -> Iterator[
         yield line + "]"
     else:
         yield encode(tree)
-
-
-_FLOAT = frozenset((float,))
 
 
 def write_model(path: Path, model: BaseModel) -> None:

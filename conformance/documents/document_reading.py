@@ -14,9 +14,9 @@ from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.files import read_bytes
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.results_building import build_suite
-from pantocheck.conformance.pages.document import BLOCK_ID, NAME
 from pantocheck.conformance.pages.words import clean_text
 from pantocheck.conformance.results.renderer_identity import identify_renderer
+from pantocheck.conformance.results.report_files import ATTACHMENT, BLOCK_ID
 from pantocheck.conformance.results.results_format import Renderer, Results
 from pantocheck.conformance.results.results_reading import parse_results
 
@@ -62,7 +62,7 @@ def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:
     reader = open_document(original, name)
     attachment = read_attachment(reader, name)
     return PdfCertificate(
-        name, content, original, reader, attachment, parse_results(attachment, f"{name}, attachment {NAME}")
+        name, content, original, reader, attachment, parse_results(attachment, f"{name}, attachment {ATTACHMENT}")
     )
 
 
@@ -94,16 +94,16 @@ def read_attachment(reader: "PdfReader", name: str) -> bytes:
         InputError: The attachment is missing, repeated or cannot be decoded.
     """
     try:
-        attachments = reader.attachments.get(NAME, [])
+        attachments = reader.attachments.get(ATTACHMENT, [])
         content = bytes(attachments[0]) if len(attachments) == 1 else b""
     except Exception as error:
         raise _build_damage_error(name, error) from None
     if len(attachments) != 1:
         hint = (
-            f"A certificate holds one {NAME}. Other PDFs cannot be verified; reports on campaigns, mass drops and "
-            "comparisons hold no results."
+            f"A certificate holds one {ATTACHMENT}. Other PDFs cannot be verified; reports on campaigns, mass drops "
+            "and comparisons hold no results."
         )
-        raise InputError(name, f"holds {len(attachments) or 'no'} attachments named {NAME}", hint)
+        raise InputError(name, f"holds {len(attachments) or 'no'} attachments named {ATTACHMENT}", hint)
     return content
 
 

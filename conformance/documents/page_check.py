@@ -36,7 +36,7 @@ from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.pages.translation import translate
-from pantocheck.conformance.pages.two_verdicts import mark_results
+from pantocheck.conformance.pages.verdict_marks import mark_results
 from pantocheck.conformance.pages.words import name_verdict
 from pantocheck.conformance.results.report_files import LANGUAGES, Language
 

@@ -13,7 +13,7 @@ from pypdf.generic import ArrayObject, DictionaryObject, IndirectObject, NameObj
 
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.authenticity_check import compare_lines, quote_difference
-from pantocheck.conformance.pages.document import NAME
+from pantocheck.conformance.results.report_files import ATTACHMENT
 
 FOREIGN_KEYS = {
     "/JavaScript": "a script",
@@ -59,7 +59,7 @@ def list_foreign_parts(reader: PdfReader, content: bytes) -> Iterator[str]:
     except Exception as error:  # the parser has no common base of its exceptions
         yield f"an object of the file cannot be read ({type(error).__name__})"
         return
-    yield from (f"a further attachment {name!r}" for name in names if name != NAME)
+    yield from (f"a further attachment {name!r}" for name in names if name != ATTACHMENT)
     yield from (f"the file has {part}" for part in sorted(found))
 
 

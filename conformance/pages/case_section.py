@@ -27,7 +27,8 @@ from pantocheck.conformance.pages.record_check_table import build_check_section
 from pantocheck.conformance.pages.run_comparison_page import comparison_blocks
 from pantocheck.conformance.pages.scope_page import describe_changes
 from pantocheck.conformance.pages.source_section import build_source_section
-from pantocheck.conformance.pages.two_verdicts import baseline_blocks, list_criteria, mark_case, verification_blocks
+from pantocheck.conformance.pages.two_verdicts import baseline_blocks, verification_blocks
+from pantocheck.conformance.pages.verdict_marks import list_criteria, mark_case
 from pantocheck.conformance.pages.verdict_reasons import describe_record, summarise_case
 from pantocheck.conformance.pages.words import format_plain, format_value, name_pantograph, replace_minus
 from pantocheck.conformance.results.case_facts_format import ContactLossFacts, EventFacts, StoredRange, StoredValue

@@ -14,7 +14,6 @@ from pantocheck.conformance.pages.criteria_table import (
     describe_criterion,
     error_name,
     mark_criterion,
-    mark_rows,
     state_causes,
 )
 from pantocheck.conformance.pages.document import digest_results, find_date
@@ -42,14 +41,8 @@ from pantocheck.conformance.pages.scope_page import (
     prepare_results,
 )
 from pantocheck.conformance.pages.step_sections import build_step_section
-from pantocheck.conformance.pages.two_verdicts import (
-    NAMES,
-    build_verdict_section,
-    describe_comparison,
-    list_criteria,
-    mark_case,
-    mark_results,
-)
+from pantocheck.conformance.pages.two_verdicts import build_verdict_section, describe_comparison
+from pantocheck.conformance.pages.verdict_marks import NAMES, list_criteria, mark_case, mark_results, mark_rows
 from pantocheck.conformance.pages.verdict_reasons import (
     CHANCE_KEY,
     build_headline,

@@ -16,7 +16,7 @@ from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.pages.condition_sections import describe_condition
 from pantocheck.conformance.pages.document_facts import name_system
 from pantocheck.conformance.pages.scope_page import describe_origin, prepare_results
-from pantocheck.conformance.pages.two_verdicts import NAMES, list_criteria, select_criteria
+from pantocheck.conformance.pages.verdict_marks import NAMES, list_criteria, select_criteria
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.pages.words import name_owner
 from pantocheck.conformance.quantities.limit_text import format_graded, is_relative_margin

@@ -11,6 +11,7 @@ from pantocheck.conformance.core.near_limit import REMEDIES, find_largest_compon
 from pantocheck.conformance.core.results_part import select_item
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.margin_bar import draw_margin_bar
+from pantocheck.conformance.pages.verdict_marks import mark_rows
 from pantocheck.conformance.pages.words import (
     format_beside_limits,
     format_plain,
@@ -37,8 +38,6 @@ MARGIN_KEY = (
 """Meaning of the margins and bars of all tables of criteria."""
 DECIDES = "decides the verdict"
 """Role of a verdict or of a step."""
-CLOSE = "close"
-"""Mark of a pass with values closer to a limit than their uncertainty."""
 Basis = Mapping[ComponentName, str]
 """How each component of an uncertainty was determined, or why it is not known: `uncertainty_basis` of a case."""
 
@@ -222,11 +221,6 @@ def _row(
         doc.TrustMark(texts.trust),
         "–" if number is None else doc.Link(f"[{number}]", f"{source_anchor}-{number}"),
     )
-
-
-def mark_rows(verdict: str, rows: Iterable[Criterion]) -> str:
-    """Mark of a verdict on criteria: `close` for a pass with close values."""
-    return CLOSE if verdict == "pass" and any(row.verdict == "pass" and row.is_close for row in rows) else verdict
 
 
 def count_inside(rows: Iterable[Criterion]) -> str:

@@ -329,12 +329,6 @@ def build_plain_document(heading: str, headline: str, blocks: Iterable[Block]) -
 # The PDF has an attachment, the HTML page a data block. Both keep the order of the results, which is that of the rows
 # of the pages. The PDF omits the times of the run, so that two runs of the same input give the same bytes. The HTML
 # page prints these times, so its data block keeps them.
-NAME = "results.json"
-"""Name of the attachment."""
-
-BLOCK_ID = "pantocheck-results"
-"""Identity of the data block, a script element of the type `application/json`, which no browser executes."""
-
 SCENES_ID = "pantocheck-scenes"
 """Identity of the data block of the moving pictures of a page without results."""
 

@@ -17,7 +17,6 @@ from pantocheck.conformance.pages.criteria_table import (
     error_name,
     has_reference,
     mark_criterion,
-    mark_rows,
 )
 from pantocheck.conformance.pages.document_facts import list_check_facts, list_issuer_facts, name_system
 from pantocheck.conformance.pages.frequency_section import mute_row
@@ -32,7 +31,8 @@ from pantocheck.conformance.pages.scope_page import (
     list_step_reasons,
     shorten_names,
 )
-from pantocheck.conformance.pages.two_verdicts import build_verdict_section, case_verdict, count_close, list_criteria
+from pantocheck.conformance.pages.two_verdicts import build_verdict_section
+from pantocheck.conformance.pages.verdict_marks import case_verdict, count_close, list_criteria, mark_rows
 from pantocheck.conformance.pages.verdict_reasons import (
     CLOSE_HEADING,
     describe_chance,

@@ -15,7 +15,6 @@ from pantocheck.conformance.core.drawn_data import pack_drawn_data
 from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.document import (
-    BLOCK_ID,
     SCENES_ID,
     Document,
     encode_data_block,
@@ -33,6 +32,7 @@ from pantocheck.conformance.pages.page_code import (
 )
 from pantocheck.conformance.pages.translation import translate, translate_document, translate_tree
 from pantocheck.conformance.pages.words import bind_page_units, read_words
+from pantocheck.conformance.results.report_files import BLOCK_ID
 
 
 def render_html(document: Document) -> str:

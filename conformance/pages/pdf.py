@@ -9,9 +9,10 @@ from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.font_file import find_fonts, replace_missing_glyphs
 from pantocheck.conformance.core.look import read_look
 from pantocheck.conformance.core.texts import TEMPLATES
-from pantocheck.conformance.pages.document import NAME, Document, encode_attachment, to_plain
+from pantocheck.conformance.pages.document import Document, encode_attachment, to_plain
 from pantocheck.conformance.pages.translation import collect_marked, translate, translate_document, translate_tree
 from pantocheck.conformance.pages.words import bind_page_units, change_texts, read_words
+from pantocheck.conformance.results.report_files import ATTACHMENT
 
 
 def render_pdf(document: Document) -> bytes:
@@ -32,8 +33,8 @@ def render_pdf(document: Document) -> bytes:
         | {name: translate(name, document.language).text for name in words["trust"]},
     }
     if document.results is not None:
-        data["attachment"] = NAME
-        files[NAME] = encode_attachment(document.results)
+        data["attachment"] = ATTACHMENT
+        files[ATTACHMENT] = encode_attachment(document.results)
     files["main.typ"] = files.pop("page.typ")
     files["page.json"] = json.dumps(change_texts(data, replace_missing_glyphs)).encode("ascii")
     return typeset(files) if document.results is None else typeset(files, pdf_standards="a-3a", timestamp=document.date)

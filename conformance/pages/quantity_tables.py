@@ -10,7 +10,7 @@ from pantocheck.conformance.core.criterion import COMPONENT_NAMES, ComponentName
 from pantocheck.conformance.pages.condition_sections import BAND_MARK, CONDITIONED, describe_condition
 from pantocheck.conformance.pages.criteria_table import has_reference
 from pantocheck.conformance.pages.document import Code, Column, RichText, Table, make_table
-from pantocheck.conformance.pages.two_verdicts import list_criteria
+from pantocheck.conformance.pages.verdict_marks import list_criteria
 from pantocheck.conformance.pages.words import format_value, name_pantograph, quantity_label, quantity_unit
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.incomplete_uncertainty import describe_half_width, list_unknown

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.core.workbook_writing import CellContent, SheetColumn, WrittenSheet, write_workbook
 from pantocheck.conformance.pages.quantity_tables import COLUMNS, list_owners, list_quantity_rows
-from pantocheck.conformance.pages.two_verdicts import list_criteria
+from pantocheck.conformance.pages.verdict_marks import list_criteria
 from pantocheck.conformance.pages.words import quantity_label, quantity_unit
 from pantocheck.conformance.results.results_format import Results, name_case
 

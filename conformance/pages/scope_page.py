@@ -6,8 +6,8 @@ from typing import TypeVar
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.criteria_table import DECIDES, count_inside, criterion_title, mark_rows
-from pantocheck.conformance.pages.two_verdicts import count_close
+from pantocheck.conformance.pages.criteria_table import DECIDES, count_inside, criterion_title
+from pantocheck.conformance.pages.verdict_marks import count_close, mark_rows
 from pantocheck.conformance.pages.words import clean_tree, format_plain, name_verdict, read_words
 from pantocheck.conformance.quantities.limit_text import raises_trust_only
 from pantocheck.conformance.results.incomplete_uncertainty import explain_missing, list_unknown

@@ -11,7 +11,7 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.condition_sections import BAND_MARK, CONDITIONED, describe_condition
 from pantocheck.conformance.pages.frequency_section import frequency_blocks
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
-from pantocheck.conformance.pages.two_verdicts import mark_case, mark_results
+from pantocheck.conformance.pages.verdict_marks import mark_case, mark_results
 from pantocheck.conformance.pages.words import clean_text, format_value, name_pantograph, quantity_label, quantity_unit
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.supported_frequency import is_supported

@@ -7,26 +7,21 @@ from html import escape
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.look import read_look
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.criteria_table import (
+from pantocheck.conformance.pages.criteria_table import DECIDES, DEVIATION_HEADINGS, count_inside, criteria_blocks
+from pantocheck.conformance.pages.verdict_marks import (
     CLOSE,
-    DECIDES,
-    DEVIATION_HEADINGS,
-    count_inside,
-    criteria_blocks,
+    NAMES,
+    case_verdict,
+    count_close,
+    list_criteria,
+    mark_results,
     mark_rows,
+    select_criteria,
 )
 from pantocheck.conformance.pages.words import name_verdict
 from pantocheck.conformance.results.case_facts_format import BaselineComparison
 from pantocheck.conformance.results.results_format import CaseResult, Results
-
-NAMES = {
-    "criteria": "EN 50318 criteria",
-    "verification": "Verification against the converged solution, up to 50 Hz",
-    "baseline": "Drift from the baseline",
-}
-"""Title of each verdict."""
 
 SHORT_TITLES = NAMES | {"verification": "Verification up to 50 Hz"}
 
@@ -43,48 +38,6 @@ BASELINE_MEANING = (
     "Drift from the baseline compares with earlier results of the user. It is no criterion of EN 50318. It always "
     "counts in the verdict of the report, and never improves it."
 )
-
-
-def case_verdict(case: CaseResult, name: str) -> Verdict | None:
-    """One of the verdicts of a case; None if the case has no converged values, or no baseline."""
-    if name == "criteria":
-        return case.criteria_verdict or case.verdict
-    part = case.verification if name == "verification" else case.baseline
-    return None if part is None else part.verdict
-
-
-def list_criteria(case: CaseResult, name: str) -> list[Criterion]:
-    """Criteria of one of the verdicts of a case."""
-    if name == "verification":
-        return [] if case.verification is None else case.verification.criteria
-    return [row for row in case.criteria if row.is_drift == (name == "baseline")]
-
-
-def select_criteria(results: Results, case: CaseResult) -> Iterator[Criterion]:
-    """Criteria of the verdicts that decide on a case; its drift from a baseline always belongs to them."""
-    for name in NAMES:
-        left_out = name == "criteria" and case.id in results.verification_only
-        decides = name in results.requested and not left_out
-        yield from (row for row in list_criteria(case, name) if decides or row.is_drift)
-
-
-def count_close(results: Results) -> int:
-    """Number of values inside limits that count, closer to a limit than their uncertainty; of required steps, too."""
-    cases = [case for case in results.cases if case.id not in results.information]
-    rows = [row for case in cases for row in select_criteria(results, case)]
-    steps = () if results.procedure is None else results.procedure.steps
-    rows += [row for step in steps if step.required for row in step.criteria]
-    return sum(row.verdict == "pass" and row.is_close for row in rows)
-
-
-def mark_results(results: Results) -> str:
-    """Mark of a run: its verdict, or `close` for a pass with close values."""
-    return CLOSE if results.verdict == "pass" and count_close(results) else results.verdict
-
-
-def mark_case(case: CaseResult) -> str:
-    """Mark of the verdict of a case."""
-    return mark_rows(case.verdict, case.criteria)
 
 
 def build_verdict_section(results: Results) -> tuple[doc.Section, ...]:

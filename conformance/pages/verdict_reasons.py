@@ -10,7 +10,8 @@ from pantocheck.conformance.pages.criteria_table import criterion_title, format_
 from pantocheck.conformance.pages.document import BulletList, Section
 from pantocheck.conformance.pages.findings_table import describe_counts
 from pantocheck.conformance.pages.scope_page import build_procedure_headline, summarise_identity
-from pantocheck.conformance.pages.two_verdicts import count_close, list_criteria, select_criteria, verdict_sentences
+from pantocheck.conformance.pages.two_verdicts import verdict_sentences
+from pantocheck.conformance.pages.verdict_marks import count_close, list_criteria, select_criteria
 from pantocheck.conformance.pages.words import (
     format_beside_limits,
     format_plain,

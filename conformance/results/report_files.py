@@ -27,6 +27,11 @@ FILES = {
 }
 """File that each format is written to; of the figures, their folder."""
 
+ATTACHMENT = FILES["json"]
+"""Name of the results inside a PDF."""
+
+BLOCK_ID = "pantocheck-results"
+"""Identity of the data block of an HTML page with the results, a script element that no browser executes."""
 
 DEFAULT_FORMATS = ("html", "pdf", "json", "csv", "junit", "md")
 """Formats of a run that states none."""

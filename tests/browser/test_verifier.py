@@ -20,10 +20,11 @@ from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.documents.document_reading import read_certificate
 from pantocheck.conformance.documents.verification import verify_certificate
 from pantocheck.conformance.pages.certificate_page import build_certificate
-from pantocheck.conformance.pages.criteria_table import describe_criterion, mark_rows
+from pantocheck.conformance.pages.criteria_table import describe_criterion
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.page_code import SIGNATURE_LIBRARY, VERIFIER_FOLDER, build_verifier
 from pantocheck.conformance.pages.translation import translate
+from pantocheck.conformance.pages.verdict_marks import mark_rows
 from pantocheck.conformance.pages.words import read_words
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.report_files import LANGUAGES, Language

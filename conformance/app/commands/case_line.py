@@ -12,7 +12,7 @@ from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Traces
 from pantocheck.conformance.pages.criteria_table import count_inside
 from pantocheck.conformance.pages.scope_page import describe_changes
-from pantocheck.conformance.pages.two_verdicts import list_criteria, mark_case, select_criteria
+from pantocheck.conformance.pages.verdict_marks import list_criteria, mark_case, select_criteria
 from pantocheck.conformance.pages.verdict_reasons import describe_record
 from pantocheck.conformance.quantities.limit_text import format_graded, name_value
 from pantocheck.conformance.results.incomplete_uncertainty import list_unknown

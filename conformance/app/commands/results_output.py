@@ -30,7 +30,8 @@ from pantocheck.conformance.pages.criteria_table import describe_close
 from pantocheck.conformance.pages.document_facts import list_administration
 from pantocheck.conformance.pages.record_check_table import CHECK_HEADINGS, describe_row
 from pantocheck.conformance.pages.scope_page import describe_changes
-from pantocheck.conformance.pages.two_verdicts import describe_comparison, mark_case, mark_results
+from pantocheck.conformance.pages.two_verdicts import describe_comparison
+from pantocheck.conformance.pages.verdict_marks import mark_case, mark_results
 from pantocheck.conformance.pages.verdict_reasons import build_headline, describe_record, state_decision
 from pantocheck.conformance.pages.words import clean_text
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, format_graded, name_value

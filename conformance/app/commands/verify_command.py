@@ -18,7 +18,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.documents.authenticity_check import CheckOutcome
 from pantocheck.conformance.documents.verification import Verification
-from pantocheck.conformance.pages.two_verdicts import mark_results
+from pantocheck.conformance.pages.verdict_marks import mark_results
 from pantocheck.conformance.pages.words import name_verdict
 
 HEADINGS: dict[CheckOutcome, str] = {

@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.pages.report_writers import remark_missing_formats
-
 LONGEST_DESCRIPTION = 160
 """Longest line that describes a value: two lines of a terminal of 80 columns."""
 
@@ -46,5 +44,7 @@ def build_column(values: Sequence[object]) -> NDArray[Any]:
 
 def warn_missing_formats(stated: Sequence[str] | None = None) -> None:
     """Warn the caller of a method of the interface of formats, stated or default, whose extra is not installed."""
+    from pantocheck.conformance.pages.report_writers import remark_missing_formats  # pages, which most values need not
+
     for remark in remark_missing_formats(stated):
         warnings.warn(remark, stacklevel=3)

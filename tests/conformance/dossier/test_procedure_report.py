@@ -25,7 +25,8 @@ from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.pages.scope_page import build_procedure_headline, list_step_reasons
-from pantocheck.conformance.pages.two_verdicts import count_close, render_badge
+from pantocheck.conformance.pages.two_verdicts import render_badge
+from pantocheck.conformance.pages.verdict_marks import count_close
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.report_files import LANGUAGES, Language
 from pantocheck.conformance.results.results_format import Results
