@@ -28,6 +28,7 @@ from verification.fmu.line_passages import repeat_passages
 CASES = {1: change_case(build_short_case(), mesh=(2.0, 0.004)), 2: change_case(build_twin_case(), mesh=(2.0, 0.004))}
 """Short cases by their number of pantographs."""
 ExportLine = Callable[..., Path]
+compile_once = functools.cache(line_fmu.compile_library)
 
 
 @pytest.fixture(scope="session")
@@ -35,13 +36,13 @@ def export_line(tmp_path_factory: pytest.TempPathFactory) -> ExportLine:
     """Function that exports the line of a short case, once per kind."""
     if (reason := find_missing_tool()) is not None:
         pytest.skip(reason)
-    folder, library = tmp_path_factory.mktemp("lines"), functools.cache(line_fmu.compile_library)
+    folder = tmp_path_factory.mktemp("lines")
 
     def export(number: int = 1, fmi: FmiVersion = "3.0", given: GivenInput = "height") -> Path:
         path = folder / f"{number}-{fmi}-{given}.fmu"
         if not path.exists():
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(line_fmu, "compile_library", library)  # the same one for all lines
+                patch.setattr(line_fmu, "compile_library", compile_once)  # the same one for all lines
                 path.write_bytes(build_line_fmu(CASES[number], fmi, given))
         return path
 
@@ -221,5 +222,6 @@ def test_the_command_writes_an_archive_and_names_a_missing_compiler(
     assert not list(tmp_path.iterdir())
     if find_missing_tool() is None and is_installed("fmpy"):
         monkeypatch.delenv("CC")
+        monkeypatch.setattr(line_fmu, "compile_library", compile_once)
         assert CliRunner().invoke(app, arguments).exit_code == 0
         assert zipfile.is_zipfile(tmp_path / "line.fmu")
