@@ -35,7 +35,7 @@ def test_fit_finds_the_damping_of_the_records(record: str, messenger_tension: fl
     text = lzma.decompress((MODES / f"{record}.json.xz").read_bytes())
     modes = TypeAdapter(list[Mode]).validate_python(json.loads(text))
     catenary = build_catenary(line.model_copy(update={"messenger_wire": messenger}))
-    fit = build_damping_results(modes, catenary, 0.75, "fit")
+    fit = build_damping_results(modes, catenary, 1.5, "fit")
     assert sum(pair.mac > 0.99 for pair in fit.pairs) >= 45
     coefficients = {(entry.kind, entry.matrix): entry for entry in fit.coefficients}
     for key, truth in TRUTH.items():

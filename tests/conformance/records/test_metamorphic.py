@@ -30,7 +30,7 @@ from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.record_folder import open_record_folder
 from pantocheck.conformance.runs.system import Delivered
 
-RULE = settings(max_examples=6)
+RULE = settings(max_examples=4)
 
 FAULTS = {
     "force of pantograph 2": "fail",
@@ -218,7 +218,7 @@ def test_one_pantograph_for_both_gives_no_pass(subject: Subject, source: int, ch
     assert_no_pass(subject, lambda record: replace(record, **{name: getattr(record, name)[rows] for name in channels}))
 
 
-@settings(RULE, max_examples=5)
+@RULE
 @given(order=st.permutations(range(11)))
 def test_the_order_of_supports_changes_nothing(subject: Subject, order: list[int]) -> None:
     record = subject.sound

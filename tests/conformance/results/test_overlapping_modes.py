@@ -54,7 +54,7 @@ def line() -> Catenary:
 @pytest.fixture(scope="module")
 def modes(line: Catenary) -> tuple[Mode, ...]:
     """Exact modes of the line; those with another one within a half-power bandwidth have the ratio of a mixture."""
-    mesh = discretise(line, 1.0, tuple(x for _, _, x in SENSORS))
+    mesh = discretise(line, 2.0, tuple(x for _, _, x in SENSORS))
     shapes = compute_modes(mesh, MODES)
     at_sensors = np.array([deflection_at(mesh, shapes, mesh.mesh.row_of[name, "z"], x) for name, _, x in SENSORS]).T
     ratio = damping_ratios(mesh, shapes)
@@ -79,7 +79,7 @@ def modes(line: Catenary) -> tuple[Mode, ...]:
 
 @pytest.fixture(scope="module")
 def results(modes: tuple[Mode, ...], line: Catenary) -> DampingResults:
-    return build_damping_results(modes, line, 1.0, "modes.json")
+    return build_damping_results(modes, line, 2.0, "modes.json")
 
 
 def test_overlap_counts_in_half_power_bandwidths() -> None:
@@ -122,4 +122,4 @@ def test_page_and_warning_name_the_modes_that_are_left_out(results: DampingResul
 def test_too_few_separate_modes_are_refused(modes: tuple[Mode, ...], results: DampingResults, line: Catenary) -> None:
     close = [mode for mode, pair in zip(modes, results.pairs, strict=True) if pair.overlapping]
     with pytest.raises(InputError, match="only 0 modes for a fit of 4 coefficients"):
-        build_damping_results(close, line, 1.0, "modes.json")
+        build_damping_results(close, line, 2.0, "modes.json")
