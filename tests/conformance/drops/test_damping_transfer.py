@@ -17,7 +17,7 @@ from pantocheck.conformance.results.damping_format import DampingResults
 from pantocheck.conformance.results.identified_modes import read_modes
 
 MODES = Path(__file__).parents[2] / "data" / "vovan2015" / "stand-in-modes.json"
-ELEMENT = 1.5
+ELEMENT = 2.25
 EDGES, RATIOS = (1.265, 2.138), (0.00201, 0.00171, 0.00155)
 """Material damping of the stand-in by group, on every line of these wires."""
 
