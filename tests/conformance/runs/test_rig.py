@@ -189,8 +189,8 @@ def test_a_rig_that_is_silent_late_faulty_or_another_one_is_stopped(line: Steppe
 
 def test_a_head_beyond_the_travel_is_approached(line: SteppedPassage) -> None:
     """The limit of the travel begins at the start of the passage."""
-    rig = SimulatedRig(line.passage.pantographs[0], line.start_height, STEP_S, begin=-0.35)
-    assert run(line, rig=rig)[0].reason == ""
+    rig = SimulatedRig(line.passage.pantographs[0], line.start_height, STEP_S, begin=-0.12)
+    assert run(line, LIMITS._replace(travel=0.1), rig)[0].reason == ""
 
 
 def test_an_interruption_brakes_the_head(line: SteppedPassage) -> None:
