@@ -61,7 +61,8 @@ class ResidualWindows:
     def first_after_calm(self, begin: int) -> int:
         """First sample of the first disturbance after a calm window; beyond the record if there is none.
 
-        Disturbed windows before the first calm window belong to the start of the decay, not to its end.
+        Disturbed windows before the first calm window belong to the start of the decay, not to its end. So do those
+        that follow within a window: fast poles can hide a short part.
         """
         calm = np.flatnonzero(~self.disturbed & (self.starts >= begin))
         if not calm.size:
@@ -70,7 +71,8 @@ class ResidualWindows:
         lasting = np.convolve(self.disturbed, np.ones(6), mode="full")[5:] >= 4
         later = np.flatnonzero(self.disturbed & lasting & (self.starts > self.starts[calm[0]]))
         # A window with a small part of a disturbance still counts as noise: a quarter of a window is left out.
-        return int(self.starts[later[0]]) - self.window // 4 if later.size else np.iinfo(np.int64).max
+        first = int(self.starts[later[0]]) - self.window // 4 if later.size else np.iinfo(np.int64).max
+        return first if first >= begin + self.window else self.first_after_calm(begin + self.window)
 
     def stays_disturbed(self, sample: int) -> bool:
         """Whether most windows after a sample are disturbed, as by wind; the error of a fit decays instead."""

@@ -129,6 +129,7 @@ def build_windows(pattern: str) -> ResidualWindows:
     [
         ("xx.....x....xx.xxx..", 0, 55),  # four of six windows, the first of them less a quarter of a window
         ("xxxxxx....xxxx......", 0, 45),  # the disturbance at the very beginning is not the end
+        ("..xxxxxx....xxxx......", 0, 55),  # calm for less than a window
         ("xxxxxx....xxxx......", 55, np.iinfo(np.int64).max),
         ("..........xxx.......", 0, np.iinfo(np.int64).max),  # three windows are chance
         ("..........xxx..x....", 0, 45),
