@@ -60,7 +60,7 @@ def test_a_broken_fmu_is_refused_with_its_reason(
     write_fmu: WriteFmu, monkeypatch: pytest.MonkeyPatch, fault: str, subject: str, reason: str
 ) -> None:
     monkeypatch.setattr(fmu_process, "STEP_LIMIT", 1.0)
-    step = 0.004 if fault == "energy" else STEP  # in longer steps the passage ends before the energy is measured
+    step = 0.004 if fault == "energy" else STEP  # in longer steps the head comes to no rest
     state, text = findings(write_fmu(fault=fault), step)[subject]
     assert state == "wrong"
     assert reason in text
