@@ -194,8 +194,10 @@ def identify_decays(
     applied: list[SensorClock] = []
     earlier: Identification | None = None
     for _ in range(ROUNDS):
-        found = earlier = _identify_once(decays, band, start, progress, plan, earlier)
+        found = _identify_once(decays, band, start, progress, plan, earlier)
         onset = find_onset(found.fit) if _is_free(start, plan) else NO_DELAY
+        # Poles that later parts refute are searched anew.
+        earlier = found if onset.delay == 0 else None
         # Poles that the user left out, and transients, would be taken for wrong clocks.
         is_explained = not onset.transients and (start is None or found.fit.misfit < SHARED_POLES)
         compared = compare_clocks(found.fit) if is_explained and plan.method != "classical" else None

@@ -16,7 +16,7 @@ from pantocheck.conformance.drops.projection import REFINEMENTS, DataBlock, prep
 SMALLEST_DAMPING_RATIO = 1e-6
 """Lower limit of a damping ratio [-]; slower decays are not observable in a record of some minutes."""
 
-IDLE = 100.0
+IDLE = 30.0
 """Cost of a step by the reach of a pole over the reduction that ends a refinement [-].
 
 Poles that the data do not determine stay. Otherwise rounding moves them: steps along close poles amplify it a
@@ -94,10 +94,9 @@ def minimise_cost(
 
 def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: float, idle: float) -> ComplexArray:
     """Damped step, in which a change by the reach of a pole costs half of `idle`."""
-    m, decay = poles.size, -poles.real
-    reach = 3 * np.maximum(decay, 0.02)
+    m, decay, reach = poles.size, -poles.real, find_reach(poles)
     kept = matrix.copy()
-    kept.flat[:: 2 * m + 1] += idle / np.concatenate([3 * decay, reach]) ** 2
+    kept.flat[:: 2 * m + 1] += idle / reach**2
     scale = np.sqrt(np.diag(kept))
     normalised = kept / (scale[:, None] * scale)
     normalised.flat[:: scale.size + 1] += damping
@@ -108,8 +107,13 @@ def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: 
     change = change / scale
     # The model is nearly linear within a threefold decay rate and a frequency shift of a few bandwidths.
     decay_new = np.minimum(np.maximum(decay + change[:m], decay / 3), decay * 3)
-    omega = np.maximum(poles.imag + np.minimum(np.maximum(change[m:], -reach), reach), 1e-3)
+    omega = np.maximum(poles.imag + np.clip(change[m:], -reach[m:], reach[m:]), 1e-3)
     return np.asarray(-np.maximum(decay_new, SMALLEST_DAMPING_RATIO * omega) + 1j * omega)
+
+
+def find_reach(poles: ComplexArray) -> RealArray:
+    """Changes of decay rates and angular frequencies beyond which a step is not linear, (2 m,) [1/s]."""
+    return np.concatenate([-3 * poles.real, 3 * np.maximum(-poles.real, 0.02)])
 
 
 @dataclass(frozen=True)
