@@ -24,7 +24,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.drops.decay_preparation import REMEDY, PreparedDecay
 from pantocheck.conformance.drops.line_fit import UNCERTAIN, FittedBlock, LineFit
-from pantocheck.conformance.drops.pole_refinement import build_normal_equations, find_reach
+from pantocheck.conformance.drops.pole_refinement import bound_estimates, build_normal_equations
 from pantocheck.conformance.drops.projection import DataBlock, Noise, build_block, whiten
 
 FAST = 5.0
@@ -111,8 +111,7 @@ def _estimate(fit: LineFit, delay: float) -> tuple[RealArray, RealArray]:
     """Change of decay rates and angular frequencies of the reported poles without the first part [s]; variances."""
     cut = [_cut_block(fit, block, delay) for block in fit.blocks]
     equations = build_normal_equations(fit.poles, whiten([data for data, _ in cut], [noise for _, noise in cut]))
-    # Beyond the band, two poles may cancel each other: no estimate is less certain than its reach.
-    matrix = equations.matrix + np.diag(find_reach(fit.poles) ** -2)
+    matrix = equations.matrix + np.diag(bound_estimates(fit.poles))
     scale = np.sqrt(np.diag(matrix))
     inverse = np.linalg.inv(matrix / np.outer(scale, scale))
     frequency = np.abs(fit.poles) / (2 * np.pi)

@@ -111,6 +111,14 @@ def _step(poles: ComplexArray, matrix: RealArray, gradient: RealArray, damping: 
     return np.asarray(-np.maximum(decay_new, SMALLEST_DAMPING_RATIO * omega) + 1j * omega)
 
 
+def bound_estimates(poles: ComplexArray) -> RealArray:
+    """Least information on decay rates [s2] and angular frequencies [s2/rad2], (2 m,), for an error of ten reaches.
+
+    Beyond the band, two poles may cancel each other. Their errors would exceed the precision of numbers.
+    """
+    return np.asarray((10 * find_reach(poles)) ** -2)
+
+
 def find_reach(poles: ComplexArray) -> RealArray:
     """Changes of decay rates and angular frequencies beyond which a step is not linear, (2 m,) [1/s]."""
     return np.concatenate([-3 * poles.real, 3 * np.maximum(-poles.real, 0.02)])

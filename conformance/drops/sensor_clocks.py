@@ -22,8 +22,8 @@ from pantocheck.conformance.drops.model_order import detection_threshold
 from pantocheck.conformance.drops.pole_refinement import (
     NormalEquations,
     add_clock_rates,
+    bound_estimates,
     build_normal_equations,
-    find_reach,
 )
 
 REFUTED = 4.5
@@ -125,8 +125,7 @@ def _compare_rates(fit: LineFit) -> ClockComparison:
     for block in fit.blocks:
         part = build_equations(fit, block, sensors)
         matrix, gradient = matrix + part.matrix, gradient + part.gradient
-    # Beyond the band, two poles may cancel each other: no estimate is less certain than its reach.
-    matrix[range(2 * m), range(2 * m)] += find_reach(fit.poles) ** -2
+    matrix[range(2 * m), range(2 * m)] += bound_estimates(fit.poles)
     used = np.delete(np.arange(gradient.size), 2 * m)
     scale = np.sqrt(np.maximum(np.diag(matrix)[used], np.finfo(float).tiny))
     covariance = np.linalg.pinv(matrix[np.ix_(used, used)] / np.outer(scale, scale), hermitian=True)
