@@ -196,8 +196,8 @@ def identify_decays(
     for _ in range(ROUNDS):
         found = _identify_once(decays, band, start, progress, plan, earlier)
         onset = find_onset(found.fit) if _is_free(start, plan) else NO_DELAY
-        # Poles that later parts refute are searched anew.
-        earlier = found if onset.delay == 0 else None
+        # Poles that every later part refutes are searched anew.
+        earlier = None if onset.delay is None else found
         # Poles that the user left out, and transients, would be taken for wrong clocks.
         is_explained = not onset.transients and (start is None or found.fit.misfit < SHARED_POLES)
         compared = compare_clocks(found.fit) if is_explained and plan.method != "classical" else None
