@@ -355,3 +355,20 @@ def _cut_record(
         evidence=evidence,
         warnings=warnings,
     )
+
+
+def choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
+    """Band up to a frequency [Hz], or up to a lower one if the slowest record requires it.
+
+    Raises:
+        InputError: The sampling rate of a record is too low for any mode.
+    """
+    slowest = min(records, key=lambda record: record.rate)
+    band = FrequencyBand.up_to(highest, slowest.rate)
+    if band.high < min(2 * band.low, highest):
+        raise InputError(
+            slowest.name,
+            f"the sampling rate of {slowest.rate:g} Hz is too low; it limits the modes to {band.high:.2g} Hz",
+            "Export the record at its original sampling rate, usually 50 Hz or more.",
+        )
+    return band

@@ -22,6 +22,7 @@ from pantocheck.conformance.drops.decay_preparation import (
     REMEDY,
     LinearDecay,
     PreparedDecay,
+    choose_band,
     extend_decay,
     prepare_again,
     prepare_decay,
@@ -349,23 +350,6 @@ def _identify_free_decays(
 def _report_modes(fit: LineFit, plan: IdentificationPlan, hidden: ComplexArray) -> tuple[Mode, ...]:
     spans = fit.records[0].decay.record.line.spans_m
     return select_reported(build_modes(fit, len(spans) or None), plan, hidden)
-
-
-def choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
-    """Band up to a frequency [Hz], or up to a lower one if the slowest record requires it.
-
-    Raises:
-        InputError: The sampling rate of a record is too low for any mode.
-    """
-    slowest = min(records, key=lambda record: record.rate)
-    band = FrequencyBand.up_to(highest, slowest.rate)
-    if band.high < min(2 * band.low, highest):
-        raise InputError(
-            slowest.name,
-            f"the sampling rate of {slowest.rate:g} Hz is too low; it limits the modes to {band.high:.2g} Hz",
-            "Export the record at its original sampling rate, usually 50 Hz or more.",
-        )
-    return band
 
 
 def _search_poles(started: PoleSearch, data: list[DataBlock]) -> tuple[PoleSelection, PoleSearch]:

@@ -6,13 +6,12 @@ from itertools import chain
 
 from pantocheck.conformance.core.array_types import ComplexArray
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.drops.decay_preparation import PreparedDecay, prepare_decay
+from pantocheck.conformance.drops.decay_preparation import PreparedDecay, choose_band, prepare_decay
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identification_plan import IdentificationPlan, exclude_channels, exclude_stretches
 from pantocheck.conformance.drops.identify import (
     NO_PLAN,
     Identification,
-    choose_band,
     group_by_line,
     identify_decays,
 )
