@@ -301,7 +301,7 @@ def _identify_driven_decays(
     progress(f"{name}: poles beside ambient motion")
     if given is None:
         longest = max(samples, key=lambda part: part[0].shape[0] * part[1])
-        search = _find_start(samples, band, plan, earlier) or _find_start([longest], band, plan, earlier)
+        search = _begin_search(samples, band, plan, earlier) or _begin_search([longest], band, plan, earlier)
         assert search is not None
     else:
         search = given.search
@@ -333,7 +333,7 @@ def _identify_free_decays(
     elif start is not None:
         selection, search = _use_poles(start, data)
     else:
-        search = _find_start(samples, band, plan, earlier) or PoleSearch((), ((START, _find_longest(decays).poles),))
+        search = _begin_search(samples, band, plan, earlier) or PoleSearch((), ((START, _find_longest(decays).poles),))
         selection, search = _search_poles(search, data)
     hidden = np.zeros(0, dtype=np.complex128)
     if plan.changes_poles:
@@ -364,7 +364,7 @@ def _find_longest(decays: list[PreparedDecay]) -> LinearDecay:
     return max((decay.linear for decay in decays), key=lambda linear: linear.duration)
 
 
-def _find_start(
+def _begin_search(
     samples: list[tuple[RealArray, float]],
     band: FrequencyBand,
     plan: IdentificationPlan,

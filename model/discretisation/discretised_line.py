@@ -60,7 +60,7 @@ def discretise(catenary: Catenary, element_length: float, places: tuple[float, .
 
 
 def with_properties(line: DiscretisedLine, catenary: Catenary) -> DiscretisedLine:
-    """Replace the properties of a line, but for its wires and places, and compute its initial state."""
+    """Line on the mesh of another one, of a catenary with wires and parts at the same places but other properties."""
     return _build_line(catenary, line.mesh, build_beams(catenary, line.mesh, line.beams))
 
 

@@ -19,8 +19,8 @@ from pantocheck.conformance.drops.drop_writing import write_drop_csv
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import (
     NO_PLAN,
+    _begin_search,
     _find_longest,
-    _find_start,
     _require_certain,
     identify_modes,
 )
@@ -149,7 +149,7 @@ def test_records_of_different_rates_start_from_the_poles_of_the_longest_decay(or
     decays = [prepare_decay(build_record(synthetic), band) for synthetic in drops]
     samples, _ = group_into_blocks(decays)
     assert len({dt for _, dt in samples}) == 2
-    assert _find_start(samples, band, NO_PLAN, None) is None
+    assert _begin_search(samples, band, NO_PLAN, None) is None
     start = _find_longest(decays).poles
     assert np.array_equal(start, max(decays, key=lambda decay: decay.linear.end).linear.poles)
     assert not np.array_equal(start, min(decays, key=lambda decay: decay.linear.end).linear.poles)
