@@ -23,11 +23,11 @@ from pantocheck.conformance.drops.decay_kernel import (
     stack_real_imaginary,
 )
 from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.elimination import factor_columns, solve_factor
 from pantocheck.conformance.drops.line_fit import UNCERTAIN, phase_collinearity
 from pantocheck.conformance.drops.mode_groups import assign_groups
 from pantocheck.conformance.drops.model_order import FALSE_ALARM
 from pantocheck.conformance.drops.pole_refinement import NormalEquations, minimise_cost
-from pantocheck.conformance.drops.projection import factor_columns, solve_factor
 from pantocheck.conformance.drops.start_poles import find_start_poles
 from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 from pantocheck.model.description.one_thread import use_one_thread

@@ -18,15 +18,14 @@ from pantocheck.conformance.drops.decay_kernel import (
     far_pole_columns,
     join_conjugates,
 )
+from pantocheck.conformance.drops.elimination import factor_columns, solve_factor
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import (
     DataBlock,
     Noise,
     ProjectionFit,
     estimate_noise,
-    factor_columns,
     pole_columns,
-    solve_factor,
     solve_residues,
     whiten,
 )
@@ -286,10 +285,10 @@ def find_best_candidate(local: LocalFit, centre: float) -> tuple[complex, float]
     gain = np.zeros(trials.size)
     for data in local.blocks:
         present = np.hstack([pole_columns(local.poles, data), data.residual_terms])
-        q, _ = factor_columns(data.expand(present))
+        q, _ = factor_columns(data.arrange(present).expand())
         x = data.signals
         residual = x - q @ (q.T @ x)
-        new = data.expand(pole_columns(trials, data))
+        new = data.arrange(pole_columns(trials, data)).expand()
         new -= q @ (q.T @ new)
         if data.whitening is None:
             gain += _pair_gains(new[:, : trials.size], new[:, trials.size :], residual)
@@ -324,7 +323,7 @@ def pole_contributions(poles: ComplexArray, blocks: list[DataBlock]) -> RealArra
     m = poles.size
     reduction = np.zeros(m)
     for data in blocks:
-        q, r = factor_columns(data.expand(np.hstack([pole_columns(poles, data), data.residual_terms])))
+        q, r = factor_columns(data.arrange(np.hstack([pole_columns(poles, data), data.residual_terms])).expand())
         inverse = solve_factor(r, np.eye(r.shape[0]))
         coefficients = inverse @ (q.T @ data.signals)
         width = 1 if data.whitening is None else data.spectrum.shape[1]

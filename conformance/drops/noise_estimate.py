@@ -8,13 +8,13 @@ import scipy
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
+from pantocheck.conformance.drops.elimination import factor_columns
 from pantocheck.conformance.drops.model_order import PoleSelection, repeat_selection, restrict_fit
 from pantocheck.conformance.drops.process_noise import ProcessNoise, deviance, update_components
 from pantocheck.conformance.drops.projection import (
     DataBlock,
     Noise,
     ProjectionFit,
-    factor_columns,
     pole_columns,
     solve_residues,
 )

@@ -11,7 +11,8 @@ from scipy.linalg.lapack import dposv
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.drops.decay_kernel import join_conjugates, kernel_and_derivative, real_columns
-from pantocheck.conformance.drops.projection import REFINEMENTS, DataBlock, prepare_elimination
+from pantocheck.conformance.drops.elimination import REFINEMENTS, prepare_elimination
+from pantocheck.conformance.drops.projection import DataBlock
 
 SMALLEST_DAMPING_RATIO = 1e-6
 """Lower limit of a damping ratio [-]; slower decays are not observable in a record of some minutes."""
@@ -177,7 +178,7 @@ def _build_white(poles: ComplexArray, data: DataBlock) -> NormalEquations:
     """Normal equations of a block with white noise, whose channels have common columns."""
     m = poles.size
     value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
-    solve = prepare_elimination(np.hstack([real_columns(value), data.residual_terms]))
+    solve = prepare_elimination(data.arrange(np.hstack([real_columns(value), data.residual_terms]))).solve
     coefficients, residual = solve(data.signals, 1 + REFINEMENTS)
 
     def derive() -> tuple[RealArray, RealArray]:
@@ -210,7 +211,7 @@ def add_clock_rates(poles: ComplexArray, data: DataBlock, sensors: NDArray[np.bo
         Normal equations of decay rates, angular frequencies and rates, (2 m + s).
     """
     value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
-    solve = prepare_elimination(data.expand(np.hstack([real_columns(value), data.residual_terms])))
+    solve = prepare_elimination(data.arrange(np.hstack([real_columns(value), data.residual_terms]))).solve
     coefficients, residual = solve(data.signals, 1 + REFINEMENTS)
 
     def derive() -> tuple[RealArray, RealArray]:

@@ -25,8 +25,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.drops.channel_columns import ChannelColumns
 from pantocheck.conformance.drops.decay_kernel import join_conjugates, kernel_and_derivative, real_columns
-from pantocheck.conformance.drops.projection import DataBlock, factor_columns, pole_columns, solve_factor
+from pantocheck.conformance.drops.elimination import REFINEMENTS, factor_columns, prepare_elimination
+from pantocheck.conformance.drops.projection import DataBlock, pole_columns
 
 PRIOR_FREEDOM = 4.0
 """Degrees of freedom of the prior of a power: shapes at the sensors differ by a factor of about two [-]."""
@@ -130,10 +132,10 @@ def deviance(noise: ProcessNoise, data: DataBlock, poles: ComplexArray) -> float
     """Minus twice the logarithm of the restricted likelihood of a noise in a block that decays are fitted to."""
     white = noise.whiten(data)
     assert white.whitening is not None
-    q, r = factor_columns(white.expand(np.hstack([pole_columns(poles, data), data.residual_terms])))
-    left = white.signals - q @ (q.T @ white.signals)
+    elimination = prepare_elimination(white.arrange(np.hstack([pole_columns(poles, data), data.residual_terms])))
+    left = elimination.solve(white.signals, 1 + REFINEMENTS)[1]
     of_noise = -4 * np.sum(np.log(np.diagonal(white.whitening, axis1=1, axis2=2).real))
-    return float(np.sum(left**2) + of_noise + 2 * np.sum(np.log(np.abs(np.diag(r)))))
+    return float(np.sum(left**2) + of_noise + elimination.log_determinant)
 
 
 def _compare_forms(
@@ -141,20 +143,19 @@ def _compare_forms(
 ) -> Callable[[ComplexArray], tuple[RealArray, RealArray]]:
     """Function of directions, (k, c, v): quadratic forms of the residual, (k, v), and their expectations."""
     k, c = white.spectrum.shape
-    q, r = factor_columns(white.expand(columns))
-    projected = q.T @ white.signals
-    slopes = white.weigh_slopes(derivative, solve_factor(r, projected).reshape(-1, c)[: 2 * m])
+    assert white.whitening is not None
+    arranged = ChannelColumns(columns, white.whitening)
+    elimination = prepare_elimination(arranged)
+    coefficients, rest = elimination.solve(white.signals, 1 + REFINEMENTS)
+    slopes = white.weigh_slopes(derivative, coefficients.reshape(-1, c)[: 2 * m])
     # The poles are estimated, too: their tangents are projected out with the residues.
-    tangents = factor_columns(slopes - q @ (q.T @ slopes))[0] if m else slopes
-    basis, residual = (
-        parts[0] + 1j * parts[1]
-        for parts in (rows.reshape(2, k, c, -1) for rows in (np.hstack([q, tangents]), white.signals - q @ projected))
-    )
+    tangents = factor_columns(elimination.solve(slopes, 1)[1])[0] if m else slopes
+    residual, basis = (rows[0] + 1j * rows[1] for rows in (x.reshape(2, k, c, -1) for x in (rest, tangents)))
+    taken = arranged.spread(elimination.inverse) + basis @ basis.conj().transpose(0, 2, 1)
 
     def compare(directions: ComplexArray) -> tuple[RealArray, RealArray]:
-        adjoint = directions.conj().transpose(0, 2, 1)
-        found = np.abs((adjoint @ residual)[:, :, 0]) ** 2
-        lost = np.sum(np.abs(adjoint @ basis) ** 2, axis=2)
+        found = np.abs((directions.conj().transpose(0, 2, 1) @ residual)[:, :, 0]) ** 2
+        lost = np.sum(directions.conj() * (taken @ directions), axis=1).real
         return found, np.maximum(2 * np.sum(np.abs(directions) ** 2, axis=1) - lost, 1e-12)
 
     return compare

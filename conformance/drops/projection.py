@@ -11,18 +11,17 @@ References:
         XIV (1996) 540-546.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 import scipy.linalg
-from scipy.linalg.blas import dtrsm
-from scipy.linalg.lapack import dpotrs
 
 from pantocheck.conformance.core.array_types import ComplexArray, IntegerArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.channel_columns import ChannelColumns
 from pantocheck.conformance.drops.decay_kernel import (
     decay_kernel,
     drift_columns,
@@ -30,6 +29,12 @@ from pantocheck.conformance.drops.decay_kernel import (
     join_conjugates,
     real_columns,
     stack_real_imaginary,
+)
+from pantocheck.conformance.drops.elimination import (
+    REFINEMENTS,
+    StoredColumns,
+    prepare_elimination,
+    solve_least_squares,
 )
 
 DRIFT_DEGREE = 4
@@ -81,13 +86,9 @@ class DataBlock:
         """Directions of the channels at each line, (k, c, v), in units of the noise."""
         return values if self.whitening is None else np.asarray(self.whitening @ values)
 
-    def expand(self, columns: RealArray) -> RealArray:
-        """Columns of each channel, (2 k, p), as those of all channels, (2 k c, p c); unchanged without a whitening."""
-        if self.whitening is None:
-            return columns
-        k, c = self.spectrum.shape
-        values = self.whitening[:, :, None, :] * (columns[:k] + 1j * columns[k:])[:, None, :, None]
-        return stack_real_imaginary(values).reshape(2 * k * c, -1)
+    def arrange(self, columns: RealArray) -> StoredColumns | ChannelColumns:
+        """Columns of a channel, (2 k, p), for the signals of all channels."""
+        return StoredColumns(columns) if self.whitening is None else ChannelColumns(columns, self.whitening)
 
     def weigh_slopes(self, derivative: RealArray, residues: RealArray) -> RealArray:
         """Derivatives of the signals by decay rates and angular frequencies, (2 k c, 2 m).
@@ -151,11 +152,10 @@ def solve_weighted_residues(poles: ComplexArray, data: DataBlock) -> tuple[Proje
     """Residues of known poles [1/s] in a block with a whitening, and the standard deviation of their parts, (m, c)."""
     (k, c), m = data.spectrum.shape, poles.size
     columns = np.hstack([pole_columns(poles, data), data.residual_terms])
-    q, r = factor_columns(data.expand(columns))
-    inverse = solve_factor(r, np.eye(r.shape[0]))
-    coefficients = (inverse @ (q.T @ data.signals)).reshape(-1, c)
+    elimination = prepare_elimination(data.arrange(columns))
+    coefficients = elimination.solve(data.signals, 1 + REFINEMENTS)[0].reshape(-1, c)
     fitted = columns @ coefficients
-    variance = np.sum(inverse**2, axis=1).reshape(-1, c)
+    variance = elimination.inverse.diagonal().reshape(-1, c)
     deviation = np.sqrt((variance[:m] + variance[m : 2 * m]) / 2)
     residual = data.spectrum - fitted[:k] - 1j * fitted[k:]
     return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual), np.asarray(deviation)
@@ -200,115 +200,3 @@ def whiten(blocks: list[DataBlock], noise: Sequence[Noise]) -> list[DataBlock]:
         replace(data, spectrum=data.spectrum / sigma) if isinstance(sigma, np.ndarray) else sigma.whiten(data)
         for data, sigma in zip(blocks, noise, strict=True)
     ]
-
-
-# Factors of the columns of a least-squares problem, from their Gram matrix.
-#
-# The Cholesky factor of the Gram matrix is the triangular factor R of columns = Q R. It takes a fraction of the time of
-# Householder's method, because it consists of matrix products. A second pass makes Q orthogonal to rounding, and two
-# refinements make a solution accurate to rounding, as long as the columns are not nearly dependent. Such columns are
-# left to Householder's method.
-#
-# References:
-#     [1] Y. Yamamoto, Y. Nakatsukasa, Y. Yanagisawa, T. Fukaya, Roundoff error analysis of the CholeskyQR2 algorithm,
-#         Electronic Transactions on Numerical Analysis 44 (2015) 306-326.
-LEAST_DIAGONAL = 1e-5
-"""Smallest diagonal entry of the factor of columns of unit length for which the Gram matrix is used [-].
-
-The method holds up to a condition number of 1e8. The diagonal overestimates the smallest singular value, of columns
-with a whitening twentyfold.
-"""
-
-REFINEMENTS = 2
-"""Largest number of refinements of a solution; each reduces its error by 1e-16 times the squared condition number."""
-LAST_CORRECTION = 1e-8
-"""Correction over the solution, below which the next refinement would change rounding only [-]."""
-
-
-def prepare_elimination(columns: RealArray) -> Callable[[RealArray, int], tuple[RealArray, RealArray]]:
-    """Function of signals, (n, c), and a number of passes that returns their coefficients and their residual.
-
-    After one pass, the error of the residual lies in the span of the columns, (n, m) with n >= m, so that products of
-    residuals have the square of its relative error. After 1 + `REFINEMENTS`, both are accurate to rounding; of
-    dependent columns, the coefficients are those with the smallest norm.
-    """
-    try:
-        return _factor_gram_matrix(columns).solve
-    except np.linalg.LinAlgError:
-        q, r = _factor_by_householder(columns)
-
-    def solve(x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
-        projected = q.T @ x
-        return solve_factor(r, projected), x - q @ projected
-
-    return solve
-
-
-def solve_least_squares(columns: RealArray, x: RealArray) -> tuple[RealArray, RealArray]:
-    """Solve columns c = x, (n, m) and (n, c), by least squares: coefficients, (m, c), and residual, (n, c)."""
-    return prepare_elimination(columns)(x, 1 + REFINEMENTS)
-
-
-def factor_columns(columns: RealArray) -> tuple[RealArray, RealArray]:
-    """Factor n >= m columns into an orthonormal basis Q, (n, m), and an upper triangular R, (m, m): columns = Q R."""
-    try:
-        first = _factor_gram_matrix(columns)
-        second = _factor_gram_matrix(first.orthogonalise())
-    except np.linalg.LinAlgError:
-        return _factor_by_householder(columns)
-    return second.orthogonalise(), second.upper @ first.upper
-
-
-def solve_factor(r: RealArray, projected: RealArray) -> RealArray:
-    """Solve R c = b, (m, m) and (m, c), for an upper triangular factor; of dependent columns the smallest solution."""
-    length = np.sqrt(np.einsum("ij,ij->j", r, r))
-    if np.all(np.abs(r.diagonal()) > LEAST_DIAGONAL * length):
-        return np.asarray(dtrsm(1.0, r, projected))
-    return np.asarray(np.linalg.lstsq(r, projected, rcond=1e-13)[0])
-
-
-@dataclass(frozen=True)
-class _GramFactor:
-    """Columns, (n, m), their lengths, (m,), and the upper factor of the Gram matrix of columns of unit length."""
-
-    columns: RealArray
-    length: RealArray
-    unit_upper: RealArray
-
-    @property
-    def upper(self) -> RealArray:
-        """Upper triangular factor R of the columns, (m, m)."""
-        return self.unit_upper * self.length
-
-    def orthogonalise(self) -> RealArray:
-        """Basis of the columns, (n, m): orthonormal up to rounding times the squared condition number."""
-        return np.asarray(dtrsm(1.0, self.upper, self.columns.T, trans_a=1).T)
-
-    def solve(self, x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
-        """Coefficients, (m, c), and residual, (n, c), of right-hand sides x; every pass after the first refines."""
-        length = self.length[:, None]
-        residual, scaled = x, np.zeros((self.columns.shape[1], x.shape[1]))
-        for _ in range(passes):
-            correction = dpotrs(self.unit_upper, self.columns.T @ residual / length)[0]
-            scaled += correction
-            residual = x - self.columns @ (scaled / length)
-            if np.abs(correction).max(initial=0.0) < LAST_CORRECTION * np.abs(scaled).max(initial=0.0):
-                break
-        return scaled / length, residual
-
-
-def _factor_gram_matrix(columns: RealArray) -> _GramFactor:
-    """Cholesky factor of the Gram matrix of columns; LinAlgError if they are nearly dependent or zero."""
-    gram = columns.T @ columns
-    length = np.sqrt(gram.diagonal())
-    if not np.all(length > 0):
-        raise np.linalg.LinAlgError
-    upper = np.linalg.cholesky(gram / length / length[:, None]).T
-    if not np.all(upper.diagonal() > LEAST_DIAGONAL):
-        raise np.linalg.LinAlgError
-    return _GramFactor(columns, np.asarray(length), np.asarray(upper))
-
-
-def _factor_by_householder(columns: RealArray) -> tuple[RealArray, RealArray]:
-    q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
-    return q, r

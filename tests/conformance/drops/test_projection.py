@@ -9,6 +9,13 @@ import scipy.linalg
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import far_pole_columns
+from pantocheck.conformance.drops.elimination import (
+    StoredColumns,
+    factor_columns,
+    prepare_elimination,
+    solve_factor,
+    solve_least_squares,
+)
 from pantocheck.conformance.drops.model_order import (
     crowded_poles,
     find_best_candidate,
@@ -19,11 +26,7 @@ from pantocheck.conformance.drops.projection import (
     DataBlock,
     build_block,
     estimate_noise,
-    factor_columns,
-    prepare_elimination,
     residue_deviation,
-    solve_factor,
-    solve_least_squares,
     solve_residues,
     whiten,
 )
@@ -134,7 +137,7 @@ def test_products_of_remainders_are_those_of_householder(condition: float, toler
     q = scipy.linalg.qr(columns, mode="economic")[0]
     expected = others - q @ (q.T @ others)
     expected -= q @ (q.T @ expected)
-    remainder = prepare_elimination(columns)(others, 1)[1]
+    remainder = prepare_elimination(StoredColumns(columns)).solve(others, 1)[1]
     size = np.linalg.norm(expected, axis=0)
     assert (remainder.T @ remainder) / np.outer(size, size) == pytest.approx(
         expected.T @ expected / np.outer(size, size), abs=tolerance
