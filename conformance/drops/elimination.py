@@ -12,7 +12,6 @@ References:
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 import scipy.linalg
@@ -20,6 +19,7 @@ from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpotrs
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.drops.channel_columns import ChannelColumns
 
 LEAST_DIAGONAL = 1e-5
 """Smallest diagonal entry of the factor of columns of unit length for which the Gram matrix is used [-].
@@ -34,22 +34,6 @@ LAST_CORRECTION = 1e-8
 """Correction over the solution, below which the next refinement would change rounding only [-]."""
 
 
-class Columns(Protocol):
-    """Columns of a least-squares problem, (n, m)."""
-
-    def expand(self) -> RealArray:
-        """The columns as an array, (n, m)."""
-
-    def multiply(self) -> RealArray:
-        """Gram matrix, (m, m)."""
-
-    def correlate(self, x: RealArray) -> RealArray:
-        """Products of the columns with signals, (n, c): (m, c)."""
-
-    def combine(self, coefficients: RealArray) -> RealArray:
-        """Sums of the columns with coefficients, (m, c): (n, c)."""
-
-
 @dataclass(frozen=True)
 class StoredColumns:
     """Columns in an array, (n, m)."""
@@ -57,40 +41,94 @@ class StoredColumns:
     columns: RealArray
 
     def expand(self) -> RealArray:
-        """See `Columns`."""
+        """The columns as an array."""
         return self.columns
 
     def multiply(self) -> RealArray:
-        """See `Columns`."""
+        """Gram matrix, (m, m)."""
         return np.asarray(self.columns.T @ self.columns)
 
     def correlate(self, x: RealArray) -> RealArray:
-        """See `Columns`."""
+        """Products of the columns with signals, (n, c): (m, c)."""
         return np.asarray(self.columns.T @ x)
 
     def combine(self, coefficients: RealArray) -> RealArray:
-        """See `Columns`."""
+        """Sums of the columns with coefficients, (m, c): (n, c)."""
         return np.asarray(self.columns @ coefficients)
 
 
-class Elimination(Protocol):
-    """Factor of columns, (n, m) with n >= m, from which coefficients follow."""
+Columns = StoredColumns | ChannelColumns
+"""Columns of a least-squares problem, (n, m)."""
 
-    def solve(self, x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
-        """Coefficients, (m, c), and residual, (n, c), of signals.
 
-        After one pass, the error of the residual lies in the span of the columns, so that products of residuals have
-        the square of its relative error. After 1 + `REFINEMENTS`, both are accurate to rounding; of dependent columns,
-        the coefficients are those with the smallest norm.
-        """
+@dataclass(frozen=True)
+class GramFactor:
+    """Columns, (n, m), their lengths, (m,), and the upper factor of the Gram matrix of columns of unit length."""
+
+    columns: Columns
+    length: RealArray
+    unit_upper: RealArray
 
     @property
+    def upper(self) -> RealArray:
+        """Upper triangular factor R of the columns, (m, m)."""
+        return self.unit_upper * self.length
+
+    @cached_property
     def inverse(self) -> RealArray:
         """Inverse of the Gram matrix, (m, m)."""
+        inverse = dpotrs(self.unit_upper, np.eye(self.length.size))[0]
+        return np.asarray(inverse / self.length / self.length[:, None])
 
     @property
     def log_determinant(self) -> float:
         """Logarithm of the determinant of the Gram matrix."""
+        return float(2 * np.sum(np.log(self.unit_upper.diagonal() * self.length)))
+
+    def solve(self, x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
+        """Coefficients, (m, c), and residual, (n, c), of signals; every pass after the first refines.
+
+        After one pass, the error of the residual lies in the span of the columns, so that products of residuals have
+        the square of its relative error. After 1 + `REFINEMENTS`, both are accurate to rounding.
+        """
+        length = self.length[:, None]
+        residual, scaled = x, np.zeros((self.length.size, x.shape[1]))
+        for _ in range(passes):
+            correction = dpotrs(self.unit_upper, self.columns.correlate(residual) / length)[0]
+            scaled += correction
+            residual = x - self.columns.combine(scaled / length)
+            if np.abs(correction).max(initial=0.0) < LAST_CORRECTION * np.abs(scaled).max(initial=0.0):
+                break
+        return scaled / length, residual
+
+
+@dataclass(frozen=True)
+class OrthogonalFactor:
+    """Orthonormal basis, (n, m), and upper triangular factor, (m, m), of columns."""
+
+    basis: RealArray
+    upper: RealArray
+
+    @cached_property
+    def inverse(self) -> RealArray:
+        """See `GramFactor`."""
+        root = solve_factor(self.upper, np.eye(self.upper.shape[0]))
+        return np.asarray(root @ root.T)
+
+    @property
+    def log_determinant(self) -> float:
+        """See `GramFactor`."""
+        return float(2 * np.sum(np.log(np.abs(self.upper.diagonal()))))
+
+    def solve(self, x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
+        """See `GramFactor`; one pass is accurate, and coefficients of dependent columns have the smallest norm."""
+        del passes
+        projected = self.basis.T @ x
+        return solve_factor(self.upper, projected), x - self.basis @ projected
+
+
+Elimination = GramFactor | OrthogonalFactor
+"""Factor of columns, (n, m) with n >= m, from which coefficients follow."""
 
 
 def prepare_elimination(columns: Columns) -> Elimination:
@@ -98,7 +136,7 @@ def prepare_elimination(columns: Columns) -> Elimination:
     try:
         return _factor_gram_matrix(columns)
     except np.linalg.LinAlgError:
-        return _OrthogonalFactor(*_factor_by_householder(columns.expand()))
+        return OrthogonalFactor(*_factor_by_householder(columns.expand()))
 
 
 def solve_least_squares(columns: RealArray, x: RealArray) -> tuple[RealArray, RealArray]:
@@ -125,69 +163,7 @@ def solve_factor(r: RealArray, projected: RealArray) -> RealArray:
     return np.asarray(np.linalg.lstsq(r, projected, rcond=1e-13)[0])
 
 
-@dataclass(frozen=True)
-class _GramFactor:
-    """Columns, (n, m), their lengths, (m,), and the upper factor of the Gram matrix of columns of unit length."""
-
-    columns: Columns
-    length: RealArray
-    unit_upper: RealArray
-
-    @property
-    def upper(self) -> RealArray:
-        """Upper triangular factor R of the columns, (m, m)."""
-        return self.unit_upper * self.length
-
-    @cached_property
-    def inverse(self) -> RealArray:
-        """See `Elimination`."""
-        inverse = dpotrs(self.unit_upper, np.eye(self.length.size))[0]
-        return np.asarray(inverse / self.length / self.length[:, None])
-
-    @property
-    def log_determinant(self) -> float:
-        """See `Elimination`."""
-        return float(2 * np.sum(np.log(self.unit_upper.diagonal() * self.length)))
-
-    def solve(self, x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
-        """See `Elimination`; every pass after the first refines."""
-        length = self.length[:, None]
-        residual, scaled = x, np.zeros((self.length.size, x.shape[1]))
-        for _ in range(passes):
-            correction = dpotrs(self.unit_upper, self.columns.correlate(residual) / length)[0]
-            scaled += correction
-            residual = x - self.columns.combine(scaled / length)
-            if np.abs(correction).max(initial=0.0) < LAST_CORRECTION * np.abs(scaled).max(initial=0.0):
-                break
-        return scaled / length, residual
-
-
-@dataclass(frozen=True)
-class _OrthogonalFactor:
-    """Orthonormal basis, (n, m), and upper triangular factor, (m, m), of columns."""
-
-    basis: RealArray
-    upper: RealArray
-
-    @cached_property
-    def inverse(self) -> RealArray:
-        """See `Elimination`."""
-        root = solve_factor(self.upper, np.eye(self.upper.shape[0]))
-        return np.asarray(root @ root.T)
-
-    @property
-    def log_determinant(self) -> float:
-        """See `Elimination`."""
-        return float(2 * np.sum(np.log(np.abs(self.upper.diagonal()))))
-
-    def solve(self, x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
-        """See `Elimination`; the first pass is accurate."""
-        del passes
-        projected = self.basis.T @ x
-        return solve_factor(self.upper, projected), x - self.basis @ projected
-
-
-def _factor_gram_matrix(columns: Columns) -> _GramFactor:
+def _factor_gram_matrix(columns: Columns) -> GramFactor:
     """Cholesky factor of the Gram matrix of columns; LinAlgError if they are nearly dependent or zero."""
     gram = columns.multiply()
     length = np.sqrt(gram.diagonal())
@@ -196,7 +172,7 @@ def _factor_gram_matrix(columns: Columns) -> _GramFactor:
     upper = np.linalg.cholesky(gram / length / length[:, None]).T
     if not np.all(upper.diagonal() > LEAST_DIAGONAL):
         raise np.linalg.LinAlgError
-    return _GramFactor(columns, np.asarray(length), np.asarray(upper))
+    return GramFactor(columns, np.asarray(length), np.asarray(upper))
 
 
 def _orthogonalise(columns: RealArray, upper: RealArray) -> RealArray:
