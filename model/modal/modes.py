@@ -89,9 +89,10 @@ def free_vectors(line: DiscretisedLine, modes: Modes) -> Array:
 
 
 def _normalise_sign(vectors: Array) -> Array:
-    """Shapes with a positive largest entry."""
-    largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=1)[:, None], axis=1)
-    return np.asarray(vectors * np.sign(largest))
+    """Shapes whose first large entry is positive: rounding alone makes one of two equal entries the largest."""
+    size = np.abs(vectors)
+    first = (size > (1 - 1e-6) * size.max(axis=1, keepdims=True)).argmax(axis=1)
+    return np.asarray(vectors * np.sign(np.take_along_axis(vectors, first[:, None], axis=1)))
 
 
 def deflection_at(line: DiscretisedLine, modes: Modes, row: int, position: float) -> Array:

@@ -19,6 +19,16 @@ def test_compute_modes_of_a_bare_wire_are_the_closed_form() -> None:
     np.testing.assert_allclose(modes.frequency, pinned_frequencies(10, 60.0, 20e3, 195.0, 1.35), rtol=1e-6)
 
 
+def test_sign_of_antisymmetric_shapes_does_not_depend_on_rounding() -> None:
+    """Halves of a shape of even number are equal and opposite: the first of them is positive in every mode."""
+    line = discretise(bare_wire(60.0), 1.0)
+    shapes = compute_modes(line, 12).shape[1::2, 0, :, 0]
+    half = shapes[:, : shapes.shape[1] // 2]
+    assert np.abs(shapes + shapes[:, ::-1]).max() < 1e-6 * np.abs(shapes).max()
+    first = (np.abs(half) > (1 - 1e-6) * np.abs(shapes).max(axis=1, keepdims=True)).argmax(axis=1)
+    assert np.all(half[np.arange(len(half)), first] > 0)
+
+
 def test_all_modes_below_a_frequency_are_found() -> None:
     """A wire of 60 m has a mode every 1 Hz: 40 of them need more than one trial. The limit itself is excluded."""
     line = discretise(bare_wire(60.0), 1.0)
