@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-import scipy
 
 from pantocheck.conformance.core.array_types import ComplexArray, IntegerArray, RealArray
 
@@ -139,19 +138,38 @@ def low_pass_taps(rate: float, passes: float, stops: float, attenuation: float) 
     Args:
         rate: Sampling rate [Hz].
         passes, stops: Edges of the transition band [Hz].
-        attenuation: Attenuation of the stop band [dB].
+        attenuation: Attenuation of the stop band, above 21 [dB].
 
     Returns:
-        Taps, (t,); t is odd.
+        Taps, (t,); t is odd, and their sum is 1.
+
+    References:
+        [1] J. F. Kaiser, Nonrecursive digital filter design using the I0-sinh window function, IEEE Int. Symp. Circuits
+            and Systems (1974) 20-23.
     """
-    length, beta = scipy.signal.kaiserord(attenuation, (stops - passes) / (rate / 2))
-    taps = scipy.signal.firwin(length | 1, (passes + stops) / 2, window=("kaiser", beta), fs=rate)
-    return np.asarray(taps, dtype=np.float64)
+    length = int(np.ceil((attenuation - 7.95) / (2.285 * 2 * np.pi * (stops - passes) / rate) + 1)) | 1
+    beta = 0.1102 * (attenuation - 8.7)
+    if attenuation <= 50:
+        beta = 0.5842 * (attenuation - 21) ** 0.4 + 0.07886 * (attenuation - 21)
+    offset = np.arange(length) - (length - 1) / 2
+    taps = np.sinc((passes + stops) / rate * offset) * np.kaiser(length, beta)
+    return np.asarray(taps / taps.sum())
 
 
 def filter_full_overlap(samples: SampledArray, taps: RealArray) -> SampledArray:
-    """Filtered samples at full overlap with the filter, (n - t + 1, c), in which each decay has its exact pole."""
-    return np.asarray(scipy.signal.oaconvolve(samples, taps[:, None], mode="valid", axes=0))
+    """Filtered samples at full overlap with the filter, (n - t + 1, c), in which each decay has its exact pole.
+
+    Overlapping parts are multiplied in the frequency domain; of each, the samples with full overlap are kept.
+    """
+    (n, channels), t = samples.shape, taps.size
+    length = 1 << (8 * t).bit_length()
+    step, left = length - t + 1, max(n - t + 1, 0)
+    padded = np.zeros((max(-(-left // step), 1) * step + t - 1, channels), dtype=samples.dtype)
+    padded[:n] = samples
+    parts = np.lib.stride_tricks.sliding_window_view(padded, length, axis=0)[::step]
+    forward, back = (np.fft.fft, np.fft.ifft) if np.iscomplexobj(samples) else (np.fft.rfft, np.fft.irfft)
+    filtered = back(forward(parts) * forward(taps, length), length)[:, :, t - 1 :]
+    return np.asarray(filtered.transpose(0, 2, 1).reshape(-1, channels)[:left])
 
 
 def filter_gain(taps: RealArray, poles: ComplexArray, rate: float) -> ComplexArray:

@@ -5,12 +5,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import MassDrop
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.measured_table import Axis
+from pantocheck.conformance.drops.decay_kernel import filter_full_overlap, low_pass_taps
 from pantocheck.conformance.drops.drop_record import MOTION_ORDER, DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
@@ -103,10 +103,11 @@ def decimate(signals: RealArray, every: int) -> RealArray:
     """
     if every == 1:
         return signals
-    length, beta = scipy.signal.kaiserord(STOP_BAND_DB, (1 - PASS_BAND) / every)
-    taps = scipy.signal.firwin(length | 1, (1 + PASS_BAND) / 2 / every, window=("kaiser", beta))
+    taps = low_pass_taps(2.0, PASS_BAND / every, 1 / every, STOP_BAND_DB)
     # The signals are extended by a straight line: the line is at rest before the start.
-    return np.asarray(scipy.signal.resample_poly(signals, 1, every, axis=0, window=taps, padtype="line"))
+    line = np.linspace(signals[0], signals[-1], len(signals))
+    half = taps.size // 2
+    return line[::every] + filter_full_overlap(np.pad(signals - line, ((half, half), (0, 0))), taps)[::every]
 
 
 def _first_wire(catenary: Catenary, kind: str, x: float) -> str:

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import scipy
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
@@ -46,7 +45,11 @@ def shows_motion(rest: RealArray, rate: float, band: FrequencyBand) -> bool:
     """Whether the line moves at rest: its channels, (n, c), have more power in the band than above it."""
     if rest.shape[0] < 3 * rate:
         return False
-    frequency, power = scipy.signal.periodogram(rest, rate, "hann", detrend="linear", axis=0)
+    count = rest.shape[0]
+    trend = np.vander(np.linspace(-1.0, 1.0, count), 2)
+    level = rest - trend @ np.linalg.lstsq(trend, rest, rcond=None)[0]
+    power = np.abs(np.fft.rfft(level * np.hanning(count + 1)[:-1, None], axis=0)) ** 2
+    frequency = np.fft.rfftfreq(count, 1 / rate)
     inside = (frequency > max(band.low, 4 * rate / rest.shape[0])) & (frequency < band.fitted)
     above = (frequency > max(band.stop, QUIET_BAND[0])) & (frequency < min(QUIET_BAND[1], 0.45 * rate))
     if inside.sum() < 8 or above.sum() < 8:

@@ -92,6 +92,27 @@ def test_band_keeps_its_margins(high: float, rate: float, expected: tuple[float,
     assert (band.low, band.high, band.fitted, band.stop) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.parametrize(("attenuation", "stops"), [(40.0, 8.0), (50.0, 5.7), (80.0, 9.0), (90.0, 5.1)])
+def test_taps_are_those_of_scipy(attenuation: float, stops: float) -> None:
+    """The same formulas; rounding of the Bessel function is below 1e-14."""
+    length, beta = scipy.signal.kaiserord(attenuation, (stops - 5.0) / 50)
+    expected = scipy.signal.firwin(length | 1, (5.0 + stops) / 2, window=("kaiser", beta), fs=100.0)
+    assert low_pass_taps(100.0, 5.0, stops, attenuation) == pytest.approx(expected, rel=1e-12, abs=1e-14)
+
+
+@pytest.mark.parametrize("count", [30, 31, 256, 500, 5000])
+@pytest.mark.parametrize("factor", [1.0, 1.0 + 2.0j], ids=["real", "complex"])
+def test_filtered_samples_are_the_full_overlap_of_a_convolution(count: int, factor: complex) -> None:
+    """Sums of 31 products of order 1, also in several parts; a record that is shorter than the filter has none."""
+    random = np.random.default_rng(1)
+    taps, samples = random.standard_normal(31), random.standard_normal((count, 2)) * factor
+    found = filter_full_overlap(samples, taps)
+    assert (found.shape, found.dtype) == ((max(count - 30, 0), 2), samples.dtype)
+    for channel, filtered in zip(samples.T, found.T, strict=True):
+        expected = np.convolve(channel, taps, "valid") if count > 30 else []
+        assert filtered == pytest.approx(np.array(expected), abs=1e-13)
+
+
 @pytest.mark.parametrize("attenuation", [40.0, 60.0, 80.0])
 def test_low_pass_has_its_attenuation(attenuation: float) -> None:
     """A Kaiser window has ripples of the attenuation in both bands; the estimate of its length misses it by 2 dB."""

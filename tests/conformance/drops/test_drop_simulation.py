@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.signal
 from numpy.testing import assert_allclose
 from typer.testing import Result
 
@@ -65,6 +66,15 @@ def test_decimation_keeps_the_pass_band_and_removes_what_would_alias() -> None:
     time = np.arange(20_000) / rate
     wave = np.sin(2 * np.pi * 101.0 * time)[:, None]
     assert np.abs(decimate(wave, every)[200:-200]).max() < 1e-4
+
+
+def test_decimated_drift_is_that_of_scipy() -> None:
+    """Ends at different levels, extended by a straight line; the same filter, so that rounding alone differs."""
+    signals = np.cumsum(np.random.default_rng(1).standard_normal((3003, 2)), axis=0)
+    length, beta = scipy.signal.kaiserord(90.0, 0.2 / 4)
+    taps = scipy.signal.firwin(length | 1, 0.9 / 4, window=("kaiser", beta))
+    expected = scipy.signal.resample_poly(signals, 1, 4, axis=0, window=taps, padtype="line")
+    assert_allclose(decimate(signals, 4), expected, rtol=0, atol=1e-11)
 
 
 def test_record_is_the_decay_at_the_rate_of_the_record(drop_case: DropCase) -> None:
