@@ -29,7 +29,7 @@ from pantocheck.conformance.drops.model_order import (
 )
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import DataBlock, solve_residues, whiten
-from pantocheck.conformance.results.identified_modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode, read_modes
 
 Method = Literal["finite-record", "classical"]
 """`finite-record`: all poles together, with the exact transform of a truncated decay; `classical`: one pole and residue
@@ -42,19 +42,51 @@ NEAR_LINES = 2.0
 """Largest distance of a pole from the one that a plan names, in spectral lines [-]."""
 
 
-class PlannedPole(InputTable):
-    """Pole that is placed or chosen by hand."""
+class StartPole(InputTable):
+    """Pole that is placed by hand."""
 
     frequency_Hz: Annotated[Positive, Field(le=1000)]
+    """Undamped frequency [Hz]."""
     damping_ratio: Annotated[Positive, Field(lt=1)] = 0.002
-    action: Literal["start", "keep", "drop"] = "start"
-    """start: the search begins with these poles; keep: added if the search does not find it; drop: removed."""
+    """Damping ratio [-]."""
 
     @property
     def pole(self) -> complex:
         """Pole [1/s]."""
-        omega = 2 * np.pi * self.frequency_Hz
-        return complex(-self.damping_ratio * omega, omega * np.sqrt(1 - self.damping_ratio**2))
+        return compute_pole(self.frequency_Hz, self.damping_ratio)
+
+
+class StartPoles(InputTable):
+    """File of start poles."""
+
+    pole: Annotated[tuple[StartPole, ...], Field(strict=False, min_length=1, max_length=1000)]
+    """Start poles."""
+
+
+def compute_pole(frequency: float, damping_ratio: float) -> complex:
+    """Pole [1/s] of an undamped frequency [Hz] and a damping ratio [-]."""
+    return 2 * np.pi * frequency * complex(-damping_ratio, np.sqrt(1 - damping_ratio**2))
+
+
+def read_poles(path: Path) -> ComplexArray:
+    """Read start poles, (m,) [1/s], from a TOML file with tables `[[pole]]`, or from a modes.json.
+
+    Raises:
+        InputError: The file cannot be read, its content is invalid, or it holds no pole.
+    """
+    if path.suffix != ".json":
+        return np.array([row.pole for row in read_model(path, StartPoles, "poles").pole])
+    modes = read_modes(path)
+    if not modes:
+        raise InputError(f"modes '{path.name}'", "holds no mode", "Give a file with at least one mode.")
+    return np.array([compute_pole(mode.frequency_Hz, mode.damping_ratio) for mode in modes])
+
+
+class PlannedPole(StartPole):
+    """Pole that is placed or chosen by hand."""
+
+    action: Literal["start", "keep", "drop"] = "start"
+    """start: the search begins with these poles; keep: added if the search does not find it; drop: removed."""
 
 
 class PlannedBand(InputTable):

@@ -40,12 +40,12 @@ from pantocheck.conformance.drops.identification_plan import (
     Method,
     exclude_channels,
     read_identification_plan,
+    read_poles,
 )
 from pantocheck.conformance.drops.identify import group_by_line, identify_modes
 from pantocheck.conformance.drops.mode_export import MODE_FORMATS, select_mode_writer
 from pantocheck.conformance.drops.population import Population, identify_population
 from pantocheck.conformance.drops.population_analysis import analyse_population
-from pantocheck.conformance.drops.start_poles import read_poles
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.line_parameters import (

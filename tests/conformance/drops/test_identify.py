@@ -17,6 +17,7 @@ from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_writing import write_drop_csv
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
+from pantocheck.conformance.drops.identification_plan import read_poles
 from pantocheck.conformance.drops.identify import (
     NO_PLAN,
     _begin_search,
@@ -29,7 +30,6 @@ from pantocheck.conformance.drops.mode_groups import number_groups
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import whiten
 from pantocheck.conformance.drops.release import find_release
-from pantocheck.conformance.drops.start_poles import read_poles
 from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode
 
 SPANS = (60.0,) * 6
