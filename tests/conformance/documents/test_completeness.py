@@ -210,6 +210,16 @@ def test_removing_information_never_gives_a_pass(
     assert grade_files(twin, folder) != "pass"
 
 
+def test_record_without_one_support_never_passes(twin: Case, record: Record, tmp_path: Path) -> None:
+    """The sidecar no longer lists it, so that the others take the numbers of its columns: neither of them is enough."""
+    numbers = np.arange(len(record.support_position))
+    verdicts = {}
+    for number in numbers:
+        write_files(tmp_path, twin, keep_supports(spoil_uplift(record), numbers != number))
+        verdicts[int(number)] = grade_files(twin, tmp_path)
+    assert "pass" not in verdicts.values(), verdicts
+
+
 def test_same_files_pass_before_they_are_spoilt(twin: Case, record: Record, tmp_path: Path) -> None:
     write_files(tmp_path, twin, record)
     assert grade_files(twin, tmp_path) == "pass"
