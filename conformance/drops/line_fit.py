@@ -251,6 +251,16 @@ def _list_warnings(mode: Mode, duration: float, nearest: float) -> tuple[str, ..
     return tuple(warnings)
 
 
+def find_ambient_share(power: float) -> float:
+    """Share of ambient motion in the variance of a pole; `power` is that at resonance over the floor [-].
+
+    It is the derivative of the logarithm of the variance by that of the power g. With x, the distance from resonance
+    in half-bandwidths, the data weigh as 1 / (1 + x^2) / (1 + g + x^2), and the share at a line is g / (1 + g + x^2).
+    """
+    a = np.sqrt(1 + power)
+    return float((a - 1) * (2 * a + 1) / (2 * a**2))
+
+
 def _inflation(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
     """Factor by which standard deviations are increased if the residual near a mode exceeds the noise.
 
@@ -262,7 +272,7 @@ def _inflation(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
         nearest = [int(np.argmin(np.abs(noise.poles - pole))) for noise in driven]
         freedom = sum(PRIOR_FREEDOM + noise.freedom[k] for noise, k in zip(driven, nearest, strict=True))
         power = np.mean([noise.power[k] for noise, k in zip(driven, nearest, strict=True)])
-        freedom *= (1 + 1 / max(float(power), 1e-3)) ** 2
+        freedom /= find_ambient_share(max(float(power), 1e-3)) ** 2
         return float(scipy.special.stdtrit(freedom, 0.025) / scipy.special.ndtri(0.025))
     energy, count = 0.0, 0
     for block in blocks:

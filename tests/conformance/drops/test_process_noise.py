@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.integrate
 from numpy.testing import assert_allclose
 
 from helpers.surrogate_drops import FieldRecord, build_line_modes, make_record
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import Identification, identify_modes
-from pantocheck.conformance.drops.line_fit import measure_ambient_motion
+from pantocheck.conformance.drops.line_fit import find_ambient_share, measure_ambient_motion
 from pantocheck.conformance.drops.noise_estimate import LEAST_EXCESS, residual_excess, shows_motion
 from pantocheck.conformance.drops.pole_refinement import build_normal_equations
 from pantocheck.conformance.drops.process_noise import ProcessNoise, update_components
@@ -85,6 +86,18 @@ def test_power_and_floor_are_found_in_driven_lines() -> None:
         floors.append(found.floor / truth.floor)
     assert np.mean(powers) == pytest.approx(300.0, rel=0.25)
     assert_allclose(np.mean(floors, axis=0), 1.0, rtol=0.1)
+
+
+@pytest.mark.parametrize("power", [0.01, 1.0, 2.0, 20.0, 1000.0])
+def test_share_of_ambient_motion_is_the_sensitivity_of_the_variance(power: float) -> None:
+    """Information on a pole over its flanks, by quadrature; central differences of 1e-4 leave 1e-8."""
+
+    def integrate(g: float) -> float:
+        return float(scipy.integrate.quad(lambda x: 1 / ((1 + x**2) * (1 + g + x**2)), -np.inf, np.inf)[0])
+
+    step = 1e-4
+    slope = np.log(integrate(power * np.exp(step)) / integrate(power * np.exp(-step))) / (2 * step)
+    assert find_ambient_share(power) == pytest.approx(-slope, rel=1e-5)
 
 
 def make_field_record(seed: int, disturbance: Disturbance) -> FieldRecord:
