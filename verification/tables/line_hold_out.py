@@ -42,12 +42,8 @@ from verification.tables.line_coverage import TENSION_ERROR, soften_droppers
 SEED = 50336
 SCENARIOS = {"tolerances": (12, (0.0, 0.2, 0.4)), "planted": (200, (0.0, 0.4)), "droppers": (200, (0.0,))}
 """Number of lines, and masses that the line file lacks [kg]."""
-TENSION_TOLERANCES = {"contact_wire_tension_pct": 2.0, "messenger_wire_tension_pct": 2.0}
-STATED_TOLERANCES = {
-    "tolerances": {},
-    "planted": TENSION_TOLERANCES,
-    "droppers": {**TENSION_TOLERANCES, "dropper_stiffness_pct": 5.0},
-}
+TENSIONS_PCT = {"contact_wire_tension_pct": 2.0, "messenger_wire_tension_pct": 2.0}
+STATED_PCT = {"tolerances": {}, "planted": TENSIONS_PCT, "droppers": TENSIONS_PCT | {"dropper_stiffness_pct": 5.0}}
 """Tolerances of the line file; the others are 1 %, those of the damping 20 %."""
 TENSIONS = slice(0, 2)
 """Places of the tensions in an estimate."""
@@ -80,7 +76,7 @@ def judge_line(scenario: str, clamp_kg: float, number: int) -> dict[str, object]
     cases, random = build_cases(), np.random.default_rng((SEED, number))
     stated, planted = cases[JUDGING].line, scenario != "tolerances"
     if planted:
-        table = ToleranceTable(source="planted", trust="provisional", **STATED_TOLERANCES[scenario])
+        table = ToleranceTable(source="planted", trust="provisional", **STATED_PCT[scenario])
         stated = stated.model_copy(update={"tolerance": table})
     estimate = begin_estimate(stated)
     factors = random.multivariate_normal(estimate.factors, estimate.covariance)
