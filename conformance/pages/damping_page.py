@@ -24,8 +24,8 @@ from pantocheck.conformance.results.damping_format import (
 )
 
 NOMINAL_INTERVALS = (
-    "Intervals are nominal 95 % intervals: value ± 1.96 standard deviations. In 280 simulated records of the "
-    "field, with drops up to 60 kg, 94 to 97 % of the intervals of the modes contained the true value: see "
+    "Intervals are nominal 95 % intervals: value ± 1.96 standard deviations. In 1,472 simulated records of the "
+    "field, with drops up to 60 kg, 94 to 96 % of the intervals of the modes contained the true value: see "
     f"{DocumentationPage.IDENTIFICATION_COVERAGE}."
 )
 """Meaning of the intervals of modes and coefficients, with their measured coverage."""
