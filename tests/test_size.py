@@ -17,7 +17,7 @@ LARGEST = {
     ("model", "conformance"): 96_480,
     ("templates",): 5_342,
     ("verification",): 20_340,
-    ("tests",): 64_345,
+    ("tests",): 64_360,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
@@ -31,7 +31,7 @@ lines (500), outputs of FMUs (140), clocks of mass drops (80) and checks of upli
 (830 lines of the product, 350 of the tests), the rest of an uplift (110, and 180 of the tests), the scatter of a line
 model (60), the start of commands (60), tests that kill mutants (360 of the tests), poles that do not depend on
 rounding (50, and 60 of the tests), products of the columns of channels (150, and 70 of the tests) and filters
-without scipy.signal (20, and 60 of the tests) have raised them last.
+without scipy.signal (20, and 75 of the tests) have raised them last.
 A lower number replaces these whenever it is reached. A subject that must add lines raises its number in the same
 commit, states the reason there, and adds at most 1,800 lines to the product, 1,500 to the tests and 900 to
 `verification/`.

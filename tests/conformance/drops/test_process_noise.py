@@ -11,7 +11,12 @@ from helpers.surrogate_drops import FieldRecord, build_line_modes, make_record
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import Identification, identify_modes
-from pantocheck.conformance.drops.line_fit import find_ambient_share, measure_ambient_motion
+from pantocheck.conformance.drops.line_fit import (
+    _fit_block,
+    _inflation,
+    find_ambient_share,
+    measure_ambient_motion,
+)
 from pantocheck.conformance.drops.noise_estimate import LEAST_EXCESS, residual_excess, shows_motion
 from pantocheck.conformance.drops.pole_refinement import build_normal_equations
 from pantocheck.conformance.drops.process_noise import ProcessNoise, update_components
@@ -98,6 +103,14 @@ def test_share_of_ambient_motion_is_the_sensitivity_of_the_variance(power: float
     step = 1e-4
     slope = np.log(integrate(power * np.exp(step)) / integrate(power * np.exp(-step))) / (2 * step)
     assert find_ambient_share(power) == pytest.approx(-slope, rel=1e-5)
+
+
+@pytest.mark.parametrize(("power", "quantile"), [(1e-3, 1.9600), (1e6, 2.0639)])
+def test_intervals_beside_ambient_motion_are_those_of_student(power: float, quantile: float) -> None:
+    """Printed quantiles of 97.5 %: normal if the floor alone counts, else that of 20 and 4 degrees of freedom."""
+    noise = build_noise(power)
+    poles, data = build_driven_block(noise, 1)
+    assert _inflation((_fit_block(poles, data, noise),), poles[1]) == pytest.approx(quantile / 1.9600, rel=1e-4)
 
 
 def make_field_record(seed: int, disturbance: Disturbance) -> FieldRecord:
